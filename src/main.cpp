@@ -39,6 +39,8 @@ int execute(const DoctorCommand& command) { return doctor_command(command); }
 
 int execute(const ViewCommand& command) { return view_command(command); }
 
+int execute(const AdviseCommand& command) { return advise_command(command); }
+
 int execute(const MeasureCommand&, const Ranks& ranks) {
   if (!ranks.is_first()) return 0;
   if (ranks.count() > 1)

@@ -34,7 +34,9 @@ void Warnings::give() {
   });
 }
 
-RenderCommand command_of(const Words& words) {
+namespace {
+
+std::vector<Setting> settings_of(const Words& words) {
   const auto& list = option_list();
   std::vector<Setting> settings;
   for (const auto& [keyword, value] : words) {
@@ -42,8 +44,12 @@ RenderCommand command_of(const Words& words) {
     if (entry == list.end()) throw Error(fmt::format("--{}: no such option", keyword));
     settings.push_back({&*entry, value});
   }
-  return make_render_command(settings);
+  return settings;
 }
+
+}  // namespace
+
+RenderCommand command_of(const Words& words) { return make_render_command(settings_of(words)); }
 
 std::unique_ptr<SceneObject> SceneObject::load(const Words& words) {
   Warnings warnings;
@@ -73,6 +79,21 @@ SceneObject::Rendered SceneObject::render(const Words& words, nb::object progres
       },
       std::move(progress));
   return {std::make_unique<ImageObject>(std::move(result)), std::move(raised), warnings.take()};
+}
+
+SceneObject::Advised SceneObject::advise(const Words& words, double limit_s, nb::object progress) {
+  const AdviceRequest request{settings_of(words), limit_s, {}, {}};
+  std::optional<Advice> advice;
+  nb::object raised = run_interruptible(
+      [&](WorkState& state) {
+        const std::lock_guard turn(mutex_);
+        AdviceRequest mine = request;
+        mine.stop = [&state] { return state.stop.load(); };
+        mine.says = [&state](const std::string&) { state.done++; };
+        advice = pt::advise(*session_, mine);
+      },
+      std::move(progress));
+  return {std::move(advice), std::move(raised)};
 }
 
 std::unique_lock<std::mutex> SceneObject::lock() {
@@ -142,6 +163,41 @@ nb::list plan(SceneObject& self, const Words& words) {
   return list;
 }
 
+nb::dict way_dict(const AdvisedWay& way) {
+  nb::dict options, result;
+  for (const auto& [name, value] : way.options)
+    options[text(option_key(find_option(name)))] = text(value);
+  result["options"] = options;
+  result["mode"] = text(way.mode);
+  result["total_ms"] = way.total_ms;
+  result["times_as_fast"] = nb::make_tuple(way.ratio, way.low, way.high);
+  result["word"] = text(way.word);
+  nb::dict stages;
+  for (const StageTime& stage : way.run.stages) stages[text(stage.stage)] = stage.time_ms;
+  result["stages_ms"] = stages;
+  return result;
+}
+
+/// None if it ended before anything was measured; and the exception that was raised meanwhile.
+nb::tuple advise(SceneObject& self, const Words& words, double limit_s, nb::object progress) {
+  auto [advice, raised] = self.advise(words, limit_s, std::move(progress));
+  if (!advice) return nb::make_tuple(nb::none(), raised);
+  nb::dict result;
+  nb::list ways;
+  for (const AdvisedWay& way : advice->ways) ways.append(way_dict(way));
+  result["default"] = way_dict(advice->standard);
+  result["ways"] = ways;
+  result["best"] = way_dict(advice->best());
+  result["text"] = text(advice_text(*advice));
+  result["device"] = text(advice->standard.run.device);
+  result["tried"] = advice->tried;
+  result["rounds"] = advice->rounds;
+  result["samples"] = advice->work.samples;
+  result["scale"] = advice->work.scale;
+  result["seconds"] = advice->seconds;
+  return nb::make_tuple(result, raised);
+}
+
 nb::dict defaults(const SceneObject& self) {
   nb::dict result;
   self.report_defaults(result);
@@ -155,6 +211,7 @@ void add_scene(nb::module_& m) {
       .def("render", &SceneObject::render, nb::arg("words"), nb::arg("progress").none(),
            nb::arg("on_device"))
       .def("plan", plan)
+      .def("advise", advise, nb::arg("words"), nb::arg("limit_s"), nb::arg("progress").none())
       .def_prop_ro("name", [](const SceneObject& self) { return text(self.name()); })
       .def("defaults", defaults)
       .def("parameters", parameters)

@@ -5,11 +5,13 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "app/render/advise.h"
 #include "app/render/render_session.h"
 #include "common/error/terminal.h"
 #include "common/scene/edit/scene_parameters.h"
@@ -39,6 +41,9 @@ class SceneObject {
   /// As RenderSession::render, interruptible.
   Rendered render(const Words& words, nanobind::object progress, bool on_device);
   std::vector<Decision> plan(const Words& words);
+  /// The advice, and the exception that was raised meanwhile (or None).
+  using Advised = std::pair<std::optional<Advice>, nanobind::object>;
+  Advised advise(const Words& words, double limit_s, nanobind::object progress);
 
   std::string name() const { return session_->scene().name; }
   const std::vector<SceneParameter>& parameters() const { return parameters_; }

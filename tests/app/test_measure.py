@@ -74,10 +74,12 @@ def is_time(name):
 
 
 def without_times(value):
-    """Without what times decide, either: into how many batches a render is divided."""
+    """Without what times decide, either: into how many batches a render is divided, and which of
+    several devices takes which pixels."""
     if isinstance(value, dict):
+        by_times = ("launches", "waves", *(("units", "samples") if "units" in value else ()))
         return {name: without_times(one) for name, one in value.items()
-                if not is_time(name) and name not in ("launches", "waves")}
+                if not is_time(name) and name not in by_times}
     return [without_times(one) for one in value] if isinstance(value, list) else value
 
 

@@ -43,6 +43,10 @@ int rays_command(const RaysCommand& command);
 /// Throws Error if a strategy breaks its contract.
 int compact_command(const CompactCommand& command);
 
+/// `ptexp advise SCENE`: renders in several ways and prints which is the fastest. Returns 0, or 128
+/// + N after signal N.
+int advise_command(const AdviseCommand& command);
+
 /// `ptexp measure`: renders the configurations that the standard input names, a JSON object in each
 /// line, and answers each with a line of the standard output: its statistics, or an error, after
 /// which the next follow. What configurations have in common is kept from one to the next. Returns

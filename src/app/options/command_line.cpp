@@ -91,25 +91,53 @@ VerifyCommand parse_verify(const Parser& parser) {
   return command;
 }
 
-/// Refuses options of files and of single renders, which a page does not have.
+/// The settings that were given beside a command that renders without an image as its result, as
+/// often as it wants. Throws Error for those of files and of single renders, and `more`.
+std::vector<Setting> settings_beside(const Parser& parser, const char* command,
+                                     std::initializer_list<std::string_view> more) {
+  std::vector<Setting> settings = given_settings(parser);
+  constexpr std::array refused = {"scene",  "output",   "stats", "csv",     "repeat",
+                                  "warmup", "counters", "part",  "explain", "checkpoint"};
+  for (const Setting& setting : settings) {
+    const std::string& name = setting.entry->name;
+    if (std::ranges::find(refused, name) != refused.end() ||
+        std::ranges::find(more, name) != more.end())
+      throw Error(fmt::format("--{}: has no effect together with {}", name, command));
+  }
+  return settings;
+}
+
+bool is_quiet(const std::vector<Setting>& settings) {
+  return std::ranges::any_of(settings, [](const Setting& s) { return s.entry->name == "quiet"; });
+}
+
 ViewCommand parse_view(const Parser& parser) {
   const std::string scene = file_of(parser.viewed, "ptexp view SCENE");
   ViewCommand command;
   if (parser.port->count() > 0)
     command.port = static_cast<int>(parse_integer("port", last_value(*parser.port), 0, 65535));
-  command.settings = {{&find_option("scene"), scene}, {&find_option("output"), "page.png"}};
-  for (const Setting& setting : given_settings(parser)) {
-    const OptionEntry& entry = *setting.entry;
-    constexpr std::array refused = {"scene",      "output",     "aov",         "stats", "csv",
-                                    "repeat",     "warmup",     "counters",    "part",  "explain",
-                                    "checkpoint", "time-limit", "target-error"};
-    if (std::ranges::find(refused, entry.name) != refused.end())
-      throw Error(fmt::format("--{}: has no effect together with view", entry.name));
-    if (entry.name == "quiet") command.is_quiet = true;
-    command.settings.push_back(setting);
-  }
+  command.settings = settings_beside(parser, "view", {"aov", "time-limit", "target-error"});
+  command.is_quiet = is_quiet(command.settings);
+  command.settings.push_back({&find_option("scene"), scene});
+  command.settings.push_back({&find_option("output"), "page.png"});
   if (make_render_command(command.settings).options.integrator == IntegratorKind::mlt)
     throw Error("--integrator mlt: has no image before it ends; view expects path");
+  return command;
+}
+
+AdviseCommand parse_advise(const Parser& parser) {
+  const std::string scene = file_of(parser.advised, "ptexp advise SCENE");
+  AdviseCommand command;
+  for (const Setting& setting : settings_beside(parser, "advise", {"exposure", "target-error"})) {
+    if (setting.entry->name == "time-limit")
+      command.limit_s = parse_number("time-limit", setting.value, "seconds above 0",
+                                     [](float x) { return x > 0; });
+    else
+      command.settings.push_back(setting);
+  }
+  command.is_quiet = is_quiet(command.settings);
+  command.settings.push_back({&find_option("scene"), scene});
+  (void)make_render_command(command.settings);  // refuses what it can at once
   return command;
 }
 
@@ -202,6 +230,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (parser.merge->parsed()) return parse_merge(parser);
   if (parser.verify->parsed()) return parse_verify(parser);
   if (parser.view->parsed()) return parse_view(parser);
+  if (parser.advise->parsed()) return parse_advise(parser);
   if (parser.compare->parsed()) {
     check_alone(parser, "compare", nullptr);
     return parse_compare(parser);

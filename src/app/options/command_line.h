@@ -35,6 +35,12 @@ struct ViewCommand {
   bool is_quiet = false;          ///< prints only the address
   std::vector<Setting> settings;  ///< the scene's name, too
 };
+/// Measures which way to render is the fastest.
+struct AdviseCommand {
+  double limit_s = 60;
+  bool is_quiet = false;          ///< no progress
+  std::vector<Setting> settings;  ///< the scene's name, too
+};
 struct CompareCommand {
   std::string a, b;
   double tolerance = 0;
@@ -58,11 +64,11 @@ struct HelpCommand {
   std::string text;  ///< to be printed as it is
 };
 
-using Command =
-    std::variant<RenderCommand, ResumeCommand, MergeCommand, VerifyCommand, CompareCommand,
-                 TraceCommand, RaysCommand, CompactCommand, DoctorCommand, MeasureCommand,
-                 ViewCommand, ListScenesCommand, ListDevicesCommand, ListKernelsCommand,
-                 VersionCommand, CompletionCommand, ReferenceCommand, HelpCommand>;
+using Command = std::variant<RenderCommand, ResumeCommand, MergeCommand, VerifyCommand,
+                             CompareCommand, TraceCommand, RaysCommand, CompactCommand,
+                             DoctorCommand, MeasureCommand, ViewCommand, AdviseCommand,
+                             ListScenesCommand, ListDevicesCommand, ListKernelsCommand,
+                             VersionCommand, CompletionCommand, ReferenceCommand, HelpCommand>;
 
 /// `arguments` without the program's name. Throws Error, one line that names the option, for
 /// everything that can be refused without a device or a scene.

@@ -24,6 +24,10 @@ constexpr const char* verify_text =
 constexpr const char* view_text =
     "Shows the render in progress on a page for the browsers of this machine, where\n"
     "camera, mode and exposure can be changed, until Ctrl-C.";
+constexpr const char* advise_text =
+    "Renders the scene by both modes and by the options that matter for it, in turns, and\n"
+    "prints which is the fastest here, how sure that is, and why. It takes --time-limit\n"
+    "seconds, by default 60, and writes no image.";
 constexpr const char* trace_text =
     "Traces rays from a file, measures the rate and compares with reference hits.\n"
     "Exit code 0: done, 1: hits differ from the reference, 2: an error.";
@@ -109,8 +113,8 @@ Parser::Parser()
   app.get_formatter()->column_width(help_column);
 }
 
-/// Options of rendering may follow the names resume, verify and view: these fall through to the
-/// program's.
+/// Options of rendering may follow the names resume, verify, view and advise: these fall through to
+/// the program's.
 void Parser::add_film_commands() {
   resume = app.add_subcommand("resume", resume_text);
   checkpoint = add_text(*resume, "FILE", "Checkpoint, an .exr of --checkpoint");
@@ -128,14 +132,17 @@ void Parser::add_film_commands() {
   viewed = add_text(*view, "SCENE", "Built-in scene or file, as --scene takes it");
   port = add_text(*view, "--port", "Port of the page; 0: any free one");
   port->type_name("N [8080]");
-  for (CLI::Option* file : {checkpoint, merged, verified, viewed})
+  advise = app.add_subcommand("advise", advise_text);
+  advised = add_text(*advise, "SCENE", "Built-in scene or file, as --scene takes it");
+  for (CLI::Option* file : {checkpoint, merged, verified, viewed, advised})
     file->type_name("")->multi_option_policy(CLI::MultiOptionPolicy::Throw);
   parts->type_name("");
-  for (CLI::App* command : {resume, merge, verify, view}) command->allow_extras()->fallthrough();
+  for (CLI::App* command : {resume, merge, verify, view, advise})
+    command->allow_extras()->fallthrough();
 }
 
 const CLI::App* Parser::rendering_subcommand() const {
-  for (const CLI::App* command : {resume, verify, view})
+  for (const CLI::App* command : {resume, verify, view, advise})
     if (command->parsed()) return command;
   return nullptr;
 }
@@ -169,7 +176,7 @@ std::string Parser::all_help() {
 CommandText Parser::describe() const {
   CommandText program = pt::describe(app);
   for (CommandText& one : program.subcommands) {
-    for (const CLI::App* renders : {resume, verify, view})
+    for (const CLI::App* renders : {resume, verify, view, advise})
       one.takes_render_options |= one.name == renders->get_name();
   }
   return program;

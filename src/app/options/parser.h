@@ -92,9 +92,10 @@ struct Parser {
   Subcommand<DoctorCommand> doctor;
   Subcommand<MeasureCommand> measure;
   CLI::App *resume = nullptr, *merge = nullptr, *verify = nullptr, *view = nullptr;
+  CLI::App* advise = nullptr;
   CLI::Option *checkpoint = nullptr, *merged = nullptr, *parts = nullptr, *verified = nullptr;
   CLI::Option *allow_missing = nullptr, *keep_sums = nullptr, *share = nullptr;
-  CLI::Option *viewed = nullptr, *port = nullptr;
+  CLI::Option *viewed = nullptr, *port = nullptr, *advised = nullptr;
   CLI::App* compare = nullptr;
   CLI::Option *image_a = nullptr, *image_b = nullptr, *tolerance = nullptr, *difference = nullptr;
 

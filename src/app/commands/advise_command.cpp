@@ -1,0 +1,43 @@
+#include <fmt/format.h>
+
+#include <string>
+
+#include "app/commands/commands.h"
+#include "app/render/advise.h"
+#include "app/render/render_session.h"
+#include "app/terminal/process.h"
+#include "app/terminal/progress.h"
+#include "common/error/error.h"
+#include "common/error/terminal.h"
+
+namespace pt {
+
+int advise_command(const AdviseCommand& command) {
+  const RenderCommand render = make_render_command(command.settings);
+  const auto warn = command.is_quiet ? RenderSession::Warn() : print_warning;
+  RenderSession session(render, warn);
+  note_signals();
+  std::optional<Advice> advice;
+  {
+    Progress progress(stderr, progress_style(stderr, command.is_quiet));
+    std::string last;
+    advice = advise(session,
+                    {command.settings, command.limit_s, interrupted, [&](const std::string& way) {
+                       if (way == last) return;
+                       progress.begin("rendering by " + way);
+                       last = way;
+                     }});
+  }
+  if (interrupted()) {
+    print_notice("interrupted");
+    return exit_code_of_signal();
+  }
+  if (!advice)
+    throw Error(fmt::format("--time-limit {:g}: no render ended before; expected more seconds",
+                            command.limit_s));
+  print("{}, ", session.scene().name);
+  print_text(advice_text(*advice));
+  return 0;
+}
+
+}  // namespace pt
