@@ -1,9 +1,6 @@
 """Columns that say how many times as fast a row is as another one that renders the same."""
-import functools
-from statistics import median
-
 from lib.description import HarnessError
-from lib.intervals import bootstrap, in_rounds
+from lib.intervals import in_rounds, interval_of_ratio
 
 # A ratio is lowest if the base is as fast and the row as slow as they may be: wider than need be.
 OPPOSITES = [("median", "median"), ("min", "max"), ("max", "min"), ("low", "high"), ("high", "low")]
@@ -38,12 +35,6 @@ def runs_of(row):
     return in_rounds([float(time) for time in row["kernel_ms_runs"].split(";")], int(row["rounds"]))
 
 
-@functools.lru_cache(maxsize=None)
-def interval_of_runs(top, bottom):
-    """(low, high) of the ratio of two medians, rounds drawn alike for both."""
-    return bootstrap([top, bottom], lambda samples: median(samples[0]) / median(samples[1]))
-
-
 def ratio_interval(top, bottom):
     """(low, high) of the ratio of two rows' kernel times by bootstrap; None where the runs of one
     are not kept, were one alone, or were made in other rounds than those of the other."""
@@ -51,4 +42,4 @@ def ratio_interval(top, bottom):
     if None in samples or len(samples[0]) != len(samples[1]) or any(
             sum(map(len, sample)) < 2 for sample in samples):
         return None
-    return interval_of_runs(*(tuple(map(tuple, sample)) for sample in samples))
+    return interval_of_ratio(*(tuple(map(tuple, sample)) for sample in samples))

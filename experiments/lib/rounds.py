@@ -3,6 +3,7 @@ import time
 
 from lib import program as ptexp
 from lib.description import HarnessError, Refused
+from lib.intervals import shares
 from lib.pooling import pooled
 from lib.provenance import machine_state, scene_hash
 from lib.resident import ONE, Resident
@@ -17,8 +18,7 @@ def repeats(configuration, arguments):
     total, warmup = configuration.repeat or arguments.repeat, arguments.warmup
     if configuration.repeat:
         warmup = configuration.warmup
-    rounds = arguments.rounds
-    return [total // rounds + (number < total % rounds) for number in range(rounds)], warmup
+    return shares(total, arguments.rounds), warmup
 
 
 def command_line(session, configuration, number=0):

@@ -6,27 +6,13 @@ import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from .shared import intervals
+
 OLD_NAMES = {"by_itself": "defaults"}  # of tables, in the release before
 BASES = ("default", "no other change")  # rows that the others of their panel differ from by one thing
 CONFIDENCE = "confidence interval"
 RANGE = "fastest to slowest repeat"
-
-
-@dataclass(frozen=True)
-class Interval:
-    """A measured value. `low` and `high` are None where nothing is known about its spread."""
-    middle: float
-    low: float = None
-    high: float = None
-    kind: str = ""
-
-    @property
-    def known(self):
-        return self.low is not None
-
-    def inverse(self):
-        return Interval(1 / self.middle, *((1 / self.high, 1 / self.low) if self.known else
-                                           (None, None)), self.kind)
+Interval = intervals.Interval
 
 
 def number(text):

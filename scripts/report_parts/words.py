@@ -1,7 +1,9 @@
 """Numbers and comparisons in words. Two values differ only if their intervals are apart."""
 import math
 
-SAME = 0.02  # times of one program differ by so much from run to run
+from .shared import intervals
+
+SAME, change, relation = intervals.SAME, intervals.change, intervals.relation
 
 
 def show(value, digits=3):
@@ -39,22 +41,6 @@ def with_interval(value, unit="", digits=3):
     if not value.known:
         return text
     return f"{text} [{show(value.low, digits)}, {show(value.high, digits)}]"
-
-
-def relation(a, b):
-    """'apart', 'overlap', or 'unknown' if the spread of one of them is."""
-    if not (a.known and b.known):
-        return "unknown"
-    return "overlap" if a.low <= b.high and b.low <= a.high else "apart"
-
-
-def change(default, value):
-    """(nvbench's word for `value`, the ratio of the times): 'faster' and 'slower' where intervals
-    are apart, 'same' where they overlap and the times are close, else 'ambiguous'."""
-    ratio, how = value.middle / default.middle, relation(default, value)
-    if how == "apart":
-        return "slower" if ratio > 1 else "faster", ratio
-    return "same" if how == "overlap" and abs(ratio - 1) <= SAME else "ambiguous", ratio
 
 
 def quotient(a, b):
