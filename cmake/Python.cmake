@@ -31,5 +31,11 @@ add_custom_target(ptexp_python_sources ALL DEPENDS ${package}/py.typed)
 add_dependencies(_ptexp ptexp_python_sources)
 nanobind_add_stub(ptexp_python_stub MODULE _ptexp OUTPUT ${package}/_ptexp.pyi
                   PYTHON_PATH ${package} DEPENDS _ptexp)
-install(FILES ${package}/_ptexp.pyi DESTINATION ptexp COMPONENT python EXCLUDE_FROM_ALL)
+# Types of keywords, from the module's table of options.
+add_custom_command(OUTPUT ${package}/_keywords.pyi
+  COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${PROJECT_BINARY_DIR}/python
+          ${Python_EXECUTABLE} -m ptexp._stub ${package}/_keywords.pyi
+  DEPENDS _ptexp ptexp_python_sources ${python_sources})
+add_custom_target(ptexp_python_keywords ALL DEPENDS ${package}/_keywords.pyi)
+install(FILES ${package}/_ptexp.pyi ${package}/_keywords.pyi DESTINATION ptexp COMPONENT python EXCLUDE_FROM_ALL)
 install(TARGETS _ptexp LIBRARY DESTINATION ptexp COMPONENT python EXCLUDE_FROM_ALL)

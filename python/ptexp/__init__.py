@@ -11,8 +11,10 @@ All modes give the same bits on a device. docs/python.md is the manual.
 from . import _ptexp
 from ._errors import Error, OptionError, SceneWarning
 from ._image import Image, Layers, denoise, write_image
+from ._measure import ModeComparison, compare_modes, measure, sweep
 from ._params import Params
 from ._scene import DeviceInfo, Scene, SceneInfo, devices, explain, load, load_string, options, render, scenes
+from ._table import Table
 from ._trace import Comparison, Hits, Mesh, compare, read_image, trace
 
 __version__ = _ptexp.build_info()["version"]
@@ -24,7 +26,8 @@ def build_info() -> dict:
 
 
 __all__ = [
-    "Comparison", "DeviceInfo", "Error", "Hits", "Image", "Layers", "Mesh", "OptionError", "Params",
-    "Scene", "SceneInfo", "SceneWarning", "build_info", "compare", "denoise", "devices", "explain",
-    "load", "load_string", "options", "read_image", "render", "scenes", "trace", "write_image",
+    "Comparison", "DeviceInfo", "Error", "Hits", "Image", "Layers", "Mesh", "ModeComparison", "OptionError", "Params",
+    "Scene", "SceneInfo", "SceneWarning", "Table", "build_info", "compare", "compare_modes", "denoise", "devices",
+    "explain", "load", "load_string", "measure", "options", "read_image", "render", "scenes", "sweep", "trace",
+    "write_image",
 ]

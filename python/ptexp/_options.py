@@ -1,7 +1,9 @@
 """From keywords to the words of the command line, by the program's own table of options."""
 import difflib
+import inspect
 import os
-from typing import Any, Dict, List, Tuple
+import re
+from typing import Any, Callable, Dict, List, Optional, Tuple
 
 from . import _ptexp
 from ._errors import OptionError, checked_text
@@ -12,6 +14,36 @@ TABLE = {option["keyword"]: option for option in _ptexp.options()}
 _SEPARATORS = {"WxH": "x", "I/N": "/", "KIND[:A[:B]]": ":"}
 
 _LOADING = {key for key, option in TABLE.items() if option["group"] == "Scene"}
+# What ptexp.measure decides, or has no use for
+_OF_MEASURE = {"mode", "repeat", "warmup", "output", "stats", "csv", "quiet", "checkpoint", "part", "counters"}
+
+
+def keywords_of(function: str) -> List[str]:
+    """The options that "load", "render" of a Scene, or "measure" can be given, in the table's order."""
+    left_out = {"scene", "explain", *{"load": (), "render": _LOADING, "measure": _OF_MEASURE}[function]}
+    return [keyword for keyword in TABLE if keyword not in left_out]
+
+
+def words_of_choice(option: Dict[str, str]) -> Optional[List[str]]:
+    """The words that the option chooses from; None: it takes something else."""
+    words = option["placeholder"].split("|")
+    return words if option["form"] == "text" and all(re.fullmatch("[a-z][a-z0-9-]*", word) for word in words) else None
+
+
+def takes_one_value(keyword: str) -> bool:
+    """Whether the option is one number, one word or a truth, never a tuple."""
+    option = _find(keyword)
+    return option["form"] in ("number", "flag") or words_of_choice(option) is not None
+
+
+def show_keywords(function: Callable, kind: str) -> None:
+    """Gives a function that ends in ``**options`` the signature by which IPython completes them."""
+    plain = inspect.signature(function)
+    own = [parameter for parameter in plain.parameters.values() if parameter.kind != parameter.VAR_KEYWORD]
+    names = {parameter.name for parameter in own}
+    own += [inspect.Parameter(keyword, inspect.Parameter.KEYWORD_ONLY, default=None)
+            for keyword in keywords_of(kind) if keyword not in names]
+    function.__signature__ = plain.replace(parameters=own)  # type: ignore[attr-defined]
 
 
 def _find(keyword: str) -> dict:
@@ -62,6 +94,21 @@ def to_words(options: Dict[str, Any]) -> List[Tuple[str, str]]:
         if value is not None:
             words += [(keyword, checked_text(word)) for word in _words(option, value)]
     return words
+
+
+def split_loading(options: Dict[str, Any]) -> Tuple[Dict[str, Any], Dict[str, Any]]:
+    """Those that only ptexp.load can be given, and the others."""
+    loading = {keyword: value for keyword, value in options.items() if keyword in _LOADING}
+    return loading, {keyword: value for keyword, value in options.items() if keyword not in loading}
+
+
+def check_of_measure(options: Dict[str, Any]) -> None:
+    """Raises OptionError for what a measurement decides itself, or has no use for."""
+    for keyword in options:
+        _find(keyword)
+        if keyword in _OF_MEASURE:
+            raise OptionError(f"--{TABLE[keyword]['name']}: is no option of a measurement, which repeats renders of "
+                              "`modes` and writes no files")
 
 
 def check_of_render(options: Dict[str, Any]) -> None:

@@ -1,13 +1,19 @@
 """Scenes in memory, and rendering them."""
 import os
-from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Optional, Tuple, Union
 
 from . import _ptexp
 from ._dict import to_elements
 from ._errors import Error, checked_text, text_of_path, warn
 from ._image import Image
-from ._options import as_documentation, check_of_render, to_words
+from ._options import as_documentation, check_of_render, show_keywords, to_words
 from ._params import Params
+from ._progress import Progress, shown
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._keywords import LoadOptions, RenderOptions
 
 PathLike = Union[str, "os.PathLike[str]"]
 
@@ -26,7 +32,8 @@ class Scene:
         self._params: Optional[Params] = None
 
     @classmethod
-    def from_dict(cls, scene: Dict[str, Any], *, name: str = "dictionary", strict: bool = False, **options: Any) -> "Scene":
+    def from_dict(cls, scene: Dict[str, Any], *, name: str = "dictionary", strict: bool = False,
+                  default_lighting: Optional[str] = None, **options: "Unpack[RenderOptions]") -> "Scene":
         """Makes a scene of dictionaries, in the form of Mitsuba 3's ``load_dict``.
 
         Args:
@@ -42,16 +49,15 @@ class Scene:
                 ``grid``, a ``mitsuba.VolumeGrid``. Arrays are copied.
             name: for statistics.
             strict: what ptexp lacks is an Error, not a SceneWarning.
-            **options: those of :func:`render`, for all renders of the scene, and
-                ``default_lighting``.
+            default_lighting: as on the command line.
+            **options: those of :func:`render`, for all renders of the scene.
 
         Raises:
             Error: it is no scene; the message says where: ``scene['box']['bsdf']: ...``.
             ValueError: indices of a mesh are none, or its arrays hold no numbers.
         """
-        lighting = options.pop("default_lighting", None)
         check_of_render(options)
-        words = to_words({**options, "strict": strict, "default_lighting": lighting})
+        words = to_words({**options, "strict": strict, "default_lighting": default_lighting})
         root, arrays = to_elements(scene)
         native = _ptexp.from_elements(root, arrays.meshes, arrays.pictures, arrays.grids, name, words)
         return cls(native, {**options, "scene": name})
@@ -78,15 +84,15 @@ class Scene:
             self._params = Params(self._native)
         return self._params
 
-    def render(self, **options: Any) -> Image:
+    def render(self, *, progress: Progress = None, on_device: bool = False, **options: "Unpack[RenderOptions]") -> Image:
         """:func:`render` of this scene."""
-        return render(self, **options)
+        return render(self, progress=progress, on_device=on_device, **options)
 
     def __repr__(self) -> str:
         return f"<ptexp.Scene {self.name!r}>"
 
 
-def load(scene: PathLike, **options: Any) -> Scene:
+def load(scene: PathLike, **options: "Unpack[LoadOptions]") -> Scene:
     """Loads a scene.
 
     Args:
@@ -109,7 +115,7 @@ def load(scene: PathLike, **options: Any) -> Scene:
     return Scene(_ptexp.load(_words(given, given.get("output"))), given)
 
 
-def load_string(text: str, **options: Any) -> Scene:
+def load_string(text: str, **options: "Unpack[LoadOptions]") -> Scene:
     """Loads a scene of Mitsuba's XML as a text.
 
     Args:
@@ -138,17 +144,18 @@ def _words(options: Dict[str, Any], output: Optional[PathLike]) -> List[Tuple[st
 def render(
     scene: Union[Scene, PathLike],
     *,
-    progress: Optional[Callable[[int, int], Any]] = None,
+    progress: Progress = None,
     on_device: bool = False,
-    **options: Any,
+    **options: "Unpack[LoadOptions]",
 ) -> Image:
     """Renders a scene.
 
     Args:
         scene: a :class:`Scene`, or what :func:`load` takes; a Scene is rendered again without
             being read again.
-        progress: called with the samples done and wanted, of all pixels, up to 20 times a second,
-            in the thread that called. What it raises ends the render and goes on to the caller.
+        progress: True: a bar in terminals and notebooks, by tqdm where that is installed. Or what
+            is called with the samples done and wanted, of all pixels, up to 20 times a second, in
+            the thread that called; what it raises ends the render and goes on to the caller.
         on_device: a GPU's image stays in its memory, for ``torch.from_dlpack(image)`` and the like
             (see :class:`Image`); the CPU's is in its memory anyway.
         **options: every option of the command line, as listed below. Flags are bools; on/off
@@ -184,7 +191,8 @@ def render(
     words = _words(merged, output)
     if output is not None:
         _ptexp.check_output(text_of_path(output))
-    native, raised, messages = scene._native.render(words, progress, on_device)
+    with shown(progress, "samples") as tell:
+        native, raised, messages = scene._native.render(words, tell, on_device)
     image = Image(native)
     try:
         _write(image, output)
@@ -222,7 +230,7 @@ def _give(image: Image, error: BaseException) -> None:
         pass
 
 
-def explain(scene: Union[Scene, PathLike], **options: Any) -> List[Dict[str, str]]:
+def explain(scene: Union[Scene, PathLike], **options: "Unpack[LoadOptions]") -> List[Dict[str, str]]:
     """How a render would be executed, and why: ``{"option", "value", "reason"}`` of each choice.
 
     Args and errors are those of :func:`render`, which it prepares but does not begin.
@@ -269,3 +277,6 @@ def options() -> List[Dict[str, str]]:
 
 
 render.__doc__ = f"{render.__doc__}\n{as_documentation()}\n" if render.__doc__ else None
+for _function, _kind in ((load, "load"), (load_string, "load"), (render, "load"), (explain, "load"),
+                         (Scene.render, "render"), (Scene.from_dict.__func__, "render")):
+    show_keywords(_function, _kind)
