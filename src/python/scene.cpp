@@ -81,18 +81,16 @@ SceneObject::Rendered SceneObject::render(const Words& words, nb::object progres
   return {std::make_unique<ImageObject>(std::move(result)), std::move(raised), warnings.take()};
 }
 
-SceneObject::Advised SceneObject::advise(const Words& words, double limit_s, nb::object progress) {
-  const AdviceRequest request{settings_of(words), limit_s, {}, {}};
+SceneObject::Advised SceneObject::advise(const Words& words, double limit_s) {
+  AdviceRequest request{settings_of(words), limit_s, {}, {}};
   std::optional<Advice> advice;
   nb::object raised = run_interruptible(
       [&](WorkState& state) {
         const std::lock_guard turn(mutex_);
-        AdviceRequest mine = request;
-        mine.stop = [&state] { return state.stop.load(); };
-        mine.says = [&state](const std::string&) { state.done++; };
-        advice = pt::advise(*session_, mine);
+        request.stop = [&state] { return state.stop.load(); };
+        advice = pt::advise(*session_, request);
       },
-      std::move(progress));
+      nb::none());
   return {std::move(advice), std::move(raised)};
 }
 
@@ -179,8 +177,8 @@ nb::dict way_dict(const AdvisedWay& way) {
 }
 
 /// None if it ended before anything was measured; and the exception that was raised meanwhile.
-nb::tuple advise(SceneObject& self, const Words& words, double limit_s, nb::object progress) {
-  auto [advice, raised] = self.advise(words, limit_s, std::move(progress));
+nb::tuple advise(SceneObject& self, const Words& words, double limit_s) {
+  auto [advice, raised] = self.advise(words, limit_s);
   if (!advice) return nb::make_tuple(nb::none(), raised);
   nb::dict result;
   nb::list ways;
@@ -211,7 +209,7 @@ void add_scene(nb::module_& m) {
       .def("render", &SceneObject::render, nb::arg("words"), nb::arg("progress").none(),
            nb::arg("on_device"))
       .def("plan", plan)
-      .def("advise", advise, nb::arg("words"), nb::arg("limit_s"), nb::arg("progress").none())
+      .def("advise", advise, nb::arg("words"), nb::arg("limit_s"))
       .def_prop_ro("name", [](const SceneObject& self) { return text(self.name()); })
       .def("defaults", defaults)
       .def("parameters", parameters)

@@ -43,7 +43,7 @@ class SceneObject {
   std::vector<Decision> plan(const Words& words);
   /// The advice, and the exception that was raised meanwhile (or None).
   using Advised = std::pair<std::optional<Advice>, nanobind::object>;
-  Advised advise(const Words& words, double limit_s, nanobind::object progress);
+  Advised advise(const Words& words, double limit_s);
 
   std::string name() const { return session_->scene().name; }
   const std::vector<SceneParameter>& parameters() const { return parameters_; }
