@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, List, NamedTuple, Optiona
 
 from ._errors import Error, OptionError
 from ._intervals import change, interval_of_ratio, median_interval, shares
-from ._options import check_of_measure, show_keywords, split_loading, takes_one_value
+from ._options import OF_MEASURE, check_of_measure, show_keywords, split_loading, takes_one_value
 from ._progress import Progress, shown
 from ._scene import PathLike, Scene, load, render
 from ._table import Table, interval_of, interval_text, rounds_of
@@ -27,9 +27,8 @@ class _Variant:
         self.statistics: Dict[str, Any] = {}  # of the last one
 
     def measure(self, scene: Scene, repeat: int, warmup: int) -> None:
-        # None: not the files that the scene was loaded with
-        files = dict.fromkeys(("output", "stats", "csv", "checkpoint"))
-        image = render(scene, **{**files, **self.options, "repeat": repeat, "warmup": warmup})
+        # None: not what the scene was loaded with, such as files
+        image = render(scene, **{**dict.fromkeys(OF_MEASURE), **self.options, "repeat": repeat, "warmup": warmup})
         self.statistics = image.stats
         self.rounds.append(image.stats["runs"])
 

@@ -15,12 +15,12 @@ _SEPARATORS = {"WxH": "x", "I/N": "/", "KIND[:A[:B]]": ":"}
 
 _LOADING = {key for key, option in TABLE.items() if option["group"] == "Scene"}
 # What ptexp.measure decides, or has no use for
-_OF_MEASURE = {"mode", "repeat", "warmup", "output", "stats", "csv", "quiet", "checkpoint", "part", "counters"}
+OF_MEASURE = {"mode", "repeat", "warmup", "output", "stats", "csv", "quiet", "checkpoint", "part", "counters"}
 
 
 def keywords_of(function: str) -> List[str]:
     """The options that "load", "render" of a Scene, or "measure" can be given, in the table's order."""
-    left_out = {"scene", "explain", *{"load": (), "render": _LOADING, "measure": _OF_MEASURE}[function]}
+    left_out = {"scene", "explain", *{"load": (), "render": _LOADING, "measure": OF_MEASURE}[function]}
     return [keyword for keyword in TABLE if keyword not in left_out]
 
 
@@ -106,7 +106,7 @@ def check_of_measure(options: Dict[str, Any]) -> None:
     """Raises OptionError for what a measurement decides itself, or has no use for."""
     for keyword in options:
         _find(keyword)
-        if keyword in _OF_MEASURE:
+        if keyword in OF_MEASURE:
             raise OptionError(f"--{TABLE[keyword]['name']}: is no option of a measurement, which repeats renders of "
                               "`modes` and writes no files")
 

@@ -185,7 +185,7 @@ def render(
     check_of_render(options)
     merged = {**scene._options, **options}
     output = merged.pop("output", None)
-    quiet = merged.pop("quiet", True)
+    quiet = merged.pop("quiet", None)
     if merged.pop("explain", False):
         raise TypeError("render has no use for explain: ptexp.explain(scene, ...) returns the plan")
     words = _words(merged, output)
@@ -196,7 +196,7 @@ def render(
     image = Image(native)
     try:
         _write(image, output)
-        if not quiet:
+        if not (quiet is None or quiet):
             print(native.table(), end="")
         if raised is not None:
             raise raised
