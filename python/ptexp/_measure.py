@@ -35,10 +35,12 @@ class _Variant:
     def rows(self, by_stage: bool) -> List[Dict[str, Any]]:
         if not self.rounds:
             return []
-        whole = self.row({"stage": "all"} if by_stage else {}, [[run["kernel_ms"] for run in runs] for runs in self.rounds])
+        whole = self.row({"stage": "all"} if by_stage else {},
+                         [[run["kernel_ms"] for run in runs] for runs in self.rounds])
         if not by_stage:
             return [whole]
-        times = [[{stage["stage"]: stage["time_ms"] for stage in run["stages"]} for run in runs] for runs in self.rounds]
+        times = [[{stage["stage"]: stage["time_ms"] for stage in run["stages"]} for run in runs]
+                 for runs in self.rounds]
         names = dict.fromkeys(name for run in chain(*times) for name in run)
         parts = [self.row({"stage": name}, [[run.get(name, 0.0) for run in runs] for runs in times]) for name in names]
         return [whole, *({**part, "mrays_per_s": None} for part in parts)]
