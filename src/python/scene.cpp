@@ -12,6 +12,7 @@
 
 #include "common/error/error.h"
 #include "common/image/codecs/image_io.h"
+#include "python/arrays.h"
 #include "python/module.h"
 #include "python/scene_object.h"
 #include "python/unlocked.h"
@@ -111,20 +112,14 @@ std::vector<float> SceneObject::get(std::size_t parameter) {
   return parameters_.at(parameter).get(session_->scene());
 }
 
-void SceneObject::set(std::size_t parameter, const std::vector<float>& values) {
+void SceneObject::set(std::size_t parameter, std::span<const float> values) {
   const auto turn = lock();
   const SceneParameter& p = parameters_.at(parameter);
-  const std::size_t wanted = p.get(session_->scene()).size();
-  if (values.size() != wanted)
-    throw Error(fmt::format("{}: {} numbers; expected {}", p.name, values.size(), wanted));
-  if (p.is_of_camera) {
-    SceneData copy;  // a setter takes a scene, of which it changes the camera alone
-    copy.camera = session_->scene().camera;
-    p.set(copy, values);
-    session_->change_camera() = copy.camera;
-  } else {
-    p.set(session_->change_scene(), values);
-  }
+  const std::vector<float> old = p.get(session_->scene());
+  if (values.size() != old.size())
+    throw Error(fmt::format("{}: {} numbers; expected {}", p.name, values.size(), old.size()));
+  if (std::ranges::equal(values, old)) return;
+  session_->change_scene(p.changes, [&](SceneData& scene) { p.set(scene, values); });
 }
 
 void SceneObject::report_defaults(nb::dict& defaults) const {
@@ -202,6 +197,20 @@ nb::dict defaults(const SceneObject& self) {
   return result;
 }
 
+/// The array of a mesh, of floats.
+nb::object get_rows(SceneObject& self, std::size_t parameter) {
+  const auto& shape = self.parameters().at(parameter).shape;
+  return array_of(self.get(parameter), {shape.at(0), shape.at(1)});
+}
+
+void set_rows(SceneObject& self, std::size_t parameter, const FloatsIn& rows) {
+  const SceneParameter& p = self.parameters().at(parameter);
+  if (rows.shape(0) != p.shape.at(0) || rows.shape(1) != p.shape.at(1))
+    throw Error(fmt::format("{}: an array of {} x {}; expected {} x {}", p.name, rows.shape(0),
+                            rows.shape(1), p.shape[0], p.shape[1]));
+  self.set(parameter, {rows.data(), rows.size()});
+}
+
 }  // namespace
 
 void add_scene(nb::module_& m) {
@@ -214,7 +223,10 @@ void add_scene(nb::module_& m) {
       .def("defaults", defaults)
       .def("parameters", parameters)
       .def("get", &SceneObject::get)
-      .def("set", &SceneObject::set);
+      .def("set", [](SceneObject& self, std::size_t parameter,
+                     const std::vector<float>& values) { self.set(parameter, values); })
+      .def("get_rows", get_rows)
+      .def("set_rows", set_rows);
   m.def("load", &SceneObject::load, nb::arg("words"));
   m.def("check_output", check_image_path);  // before any work
 }

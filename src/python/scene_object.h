@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -48,7 +49,8 @@ class SceneObject {
   std::string name() const { return session_->scene().name; }
   const std::vector<SceneParameter>& parameters() const { return parameters_; }
   std::vector<float> get(std::size_t parameter);
-  void set(std::size_t parameter, const std::vector<float>& values);
+  /// The value that it has already does nothing. Throws Error for one that it cannot have.
+  void set(std::size_t parameter, std::span<const float> values);
   void report_defaults(nanobind::dict& defaults) const;
 
  private:

@@ -166,6 +166,11 @@ bool WavefrontCuda::set_camera(const Camera& camera) {
   return CudaRenderer::set_camera(camera);
 }
 
+bool WavefrontCuda::set_scene(const SceneData& scene, const SceneChanges& changes) {
+  destroy_graph();
+  return CudaRenderer::set_scene(scene, changes);
+}
+
 // A graph whose only node is a WHILE loop; its body is a few waves, recorded from the stream.
 void WavefrontCuda::build_graph(const SampleBuffer& batch) {
   check_cuda(cudaGraphCreate(&graph_, 0), "cudaGraphCreate");

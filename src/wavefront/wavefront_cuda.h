@@ -28,6 +28,7 @@ class WavefrontCuda : public CudaRenderer {
   WavefrontCuda(const ExecutionPlan& plan, const SceneData& scene, int device);
   ~WavefrontCuda() override;
   bool set_camera(const Camera& camera) override;
+  bool set_scene(const SceneData& scene, const SceneChanges& changes) override;
 
   /// Enqueues one wave on stream(). `loop`: the handle of the graph's loop, 0 outside of one.
   /// `starts_paths`: see run_wave.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 
 #include "app/options/check_options.h"
 #include "app/render/make_renderer.h"
@@ -52,6 +53,16 @@ Keys keys_of(const Options& options) {
   return keys;
 }
 
+/// Whether a renderer of one plan is that of the other, where options are the same.
+bool renders_alike(const ExecutionPlan& a, const ExecutionPlan& b) {
+  const auto of_scene = [](const ExecutionPlan& p) {
+    return std::tie(p.mode, p.kernel_set, p.accel, p.traversal, p.light_selection, p.megakernel,
+                    p.scene_memory, p.fused, p.orders_surfaces, p.persistent_warps, p.finish_paths,
+                    p.finishes_in_blocks, p.pool_paths_max, p.uses_graph, p.decisions);
+  };
+  return of_scene(a) == of_scene(b);
+}
+
 }  // namespace
 
 struct RenderSession::Prepared {
@@ -61,6 +72,7 @@ struct RenderSession::Prepared {
   SceneData scene;
   std::vector<ExecutionPlan> plans;  ///< one for each device
   SceneFacts facts;
+  double built_cost = 0;  ///< of the tree, when it was built
   double scene_ms = 0;
   Warn warn;  ///< of the render at work
   std::unique_ptr<Rendering> rendering;
@@ -96,14 +108,35 @@ RenderSession::RenderSession(const RenderCommand& command, const Warn& warn) {
   source_ = load_scene(options, devices.front(), warn);
 }
 
-SceneData& RenderSession::change_scene() {
-  prepared_.reset();
-  return source_;
+void RenderSession::change_scene(const SceneChanges& changes,
+                                 const std::function<void(SceneData&)>& edit) {
+  edit(source_);
+  changes_.add(changes);
 }
 
 CameraParameters& RenderSession::change_camera() {
-  camera_changed_ = true;
+  changes_.camera = true;
   return source_.camera;
+}
+
+/// Prepares again what depends on the changes; the rendering is kept if it can take them over.
+/// False: the scene has to be prepared anew.
+bool RenderSession::update(Prepared& ready, const Options& options,
+                           const std::vector<DeviceInfo>& devices, SceneChanges changes) const {
+  SceneData& scene = ready.scene;
+  if (!resolve_changes(scene, source_, changes, options)) return false;
+  if (ready.rendering && !changes.any_but_camera()) return true;
+  std::vector<ExecutionPlan> plans = ready.plan_anew(options, devices);
+  if (!has_same_structure(plans.front(), ready.plans.front())) return false;
+  changes.lights |= !prepares_alike(plans.front(), ready.plans.front());
+  if (!std::ranges::equal(plans, ready.plans, renders_alike)) ready.rendering.reset();
+  ready.plans = std::move(plans);
+  const bool is_rebuilt = prepare_changes(scene, changes, ready.plans.front(), ready.built_cost);
+  if (changes.any()) describe_scene(scene, ready.facts, changes.move_surfaces());
+  if (is_rebuilt) ready.built_cost = ready.facts.tree.sah_cost;
+  if (ready.rendering && !ready.rendering->renderer().set_scene(scene, changes))
+    ready.rendering.reset();
+  return true;
 }
 
 RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, const Warn& warn,
@@ -113,7 +146,7 @@ RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, co
   clock.end(&ProcessTimes::devices);
   apply_defaults(source_.defaults, command.given, options);
   Keys keys = keys_of(options);
-  const bool is_same = prepared_ && !camera_changed_ && prepared_->keys.renderer == keys.renderer;
+  const bool is_same = prepared_ && !changes_.any() && prepared_->keys.renderer == keys.renderer;
   if (is_same) {
     prepared_->scene_ms = 0;
     prepared_->warn = warn;
@@ -124,15 +157,9 @@ RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, co
   const double begin_s = steady_seconds();
   std::unique_ptr<Prepared> next = std::move(prepared_);  // gone if anything is refused
   if (next && next->keys.renderer != keys.renderer) next->rendering.reset();
-  const bool has_moved = camera_changed_ || (next && next->keys.camera != keys.camera);
-  bool is_kept = next && next->keys.scene == keys.scene &&
-                 (!has_moved || move_camera(next->scene, source_.camera, options));
-  if (is_kept && !next->rendering) {
-    std::vector<ExecutionPlan> plans = next->plan_anew(options, devices);
-    is_kept = prepares_alike(plans.front(), next->plans.front());
-    next->plans = std::move(plans);
-  }
-  if (!is_kept) {
+  SceneChanges changes = changes_;
+  changes.camera |= next && next->keys.camera != keys.camera;
+  if (!next || next->keys.scene != keys.scene || !update(*next, options, devices, changes)) {
     next.reset();  // its memory is needed
     next = std::make_unique<Prepared>();
     next->scene = source_;
@@ -140,6 +167,7 @@ RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, co
     next->plans = plan_render(options, next->scene, devices);
     prepare_scene(next->scene, next->plans.front());
     describe_scene(next->scene, next->facts);  // goes through the tree
+    next->built_cost = next->facts.tree.sah_cost;
   }
   clock.end(&ProcessTimes::prepare);
   next->scene_ms = 1e3 * (steady_seconds() - begin_s);
@@ -152,7 +180,7 @@ RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, co
   if (!next->rendering || !next->rendering->renderer().set_camera(camera)) next->make_rendering();
   clock.end(&ProcessTimes::setup);
   prepared_ = std::move(next);
-  camera_changed_ = false;
+  changes_ = {};
   return *prepared_;
 }
 

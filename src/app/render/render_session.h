@@ -44,8 +44,9 @@ class RenderSession {
 
   /// As loaded, not prepared.
   const SceneData& scene() const { return source_; }
-  /// For changes; the next render prepares the scene again.
-  SceneData& change_scene();
+  /// Calls edit(scene), which changes no more than `changes` says; the next render prepares again
+  /// what depends on that. Throws what `edit` throws, which has changed nothing then.
+  void change_scene(const SceneChanges& changes, const std::function<void(SceneData&)>& edit);
   /// For changes of the camera, which keep the acceleration structure.
   CameraParameters& change_camera();
 
@@ -65,9 +66,11 @@ class RenderSession {
   struct Prepared;
 
   Prepared& prepare(const RenderCommand& command, const Warn& warn, ProcessClock& clock);
+  bool update(Prepared& ready, const Options& options, const std::vector<DeviceInfo>& devices,
+              SceneChanges changes) const;
 
   SceneData source_;
-  bool camera_changed_ = false;
+  SceneChanges changes_;  ///< since the last preparation
   std::unique_ptr<Prepared> prepared_;
 };
 

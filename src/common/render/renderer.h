@@ -15,6 +15,9 @@
 
 namespace pt {
 
+struct SceneChanges;
+struct SceneData;
+
 /// Ends a render before all of its samples are taken. 0: no such limit.
 struct StopRule {
   double seconds = 0;         ///< of rendering
@@ -57,6 +60,9 @@ class Renderer {
   /// Looks at the same scene through another camera of its kind (move_camera), and forgets the last
   /// render. False: it cannot, and has to be made anew.
   virtual bool set_camera(const Camera&) { return false; }
+  /// Takes over what has changed of its scene (prepare_changes), which a plan that differs in
+  /// nothing still fits, and forgets the last render. False: it cannot, and has to be made anew.
+  virtual bool set_scene(const SceneData&, const SceneChanges&) { return false; }
 
   /// The mean of all samples of the film of the last render.
   virtual Image image() = 0;

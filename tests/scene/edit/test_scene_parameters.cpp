@@ -144,6 +144,12 @@ SceneData scene_of_all() {
   scene.names.delta_lights = {{0, "bulb"}, {2, "bulb"}};
   scene.sun.one_minus_cos = 1e-5f;
   scene.instances = {{1, {}}, {1, {}}};
+  scene.meshes.resize(4);
+  for (Mesh& mesh : scene.meshes)
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, mesh.material = 2;
+  scene.meshes[0].material = a, scene.meshes[1].material = b;
+  scene.meshes[0].normals.resize(3, Vec3(0, 0, 1));
+  scene.names.meshes = {{2, "bust"}};
   return scene;
 }
 
@@ -174,11 +180,31 @@ TEST(SceneParameters, AreAllThatASceneHas) {
                                           "lights.sky.zenith",
                                           "lights.sun.radiance",
                                           "instances.0.to_world",
-                                          "instances.1.to_world"};
+                                          "instances.1.to_world",
+                                          "meshes.one.vertices",
+                                          "meshes.one.normals",
+                                          "meshes.one_2.vertices",
+                                          "meshes.bust.vertices",
+                                          "meshes.mesh_3.vertices"};
   SceneData scene = scene_of_all();
   EXPECT_EQ(names_in(scene), expected);
-  for (const SceneParameter& p : scene_parameters(scene))
-    EXPECT_EQ(p.is_of_camera, p.name.starts_with("camera.")) << p.name;
+  const std::map<std::string, SceneChanges> stale = {
+      {"camera.fov", {.camera = true}},
+      {"materials.one.albedo", {.shading = true}},
+      {"materials.one.opacity", {.shading = true, .lights = true}},
+      {"materials.material_3.weight", {.shading = true}},
+      {"lights.lamp.radiance", {.shading = true, .lights = true}},
+      {"lights.sun.radiance", {.shading = true, .lights = true}},
+      {"instances.1.to_world", {.instances = true}},
+      {"meshes.one.vertices", {.vertices = true}},
+      {"meshes.one.normals", {.normals = true}}};
+  int found = 0;
+  for (const SceneParameter& p : scene_parameters(scene)) {
+    if (!stale.contains(p.name)) continue;
+    EXPECT_EQ(p.changes, stale.at(p.name)) << p.name;
+    ++found;
+  }
+  EXPECT_EQ(found, stale.size());
 
   scene.camera.orthographic = true;  // without a field of view, a lens or a plane in focus
   std::vector<std::string> others(expected.begin(), expected.begin() + 3);

@@ -32,4 +32,8 @@ InstanceTree build_instance_tree(std::span<const GroupTree> groups,
 void add_instance_tree(TriangleTreeData& tree, std::span<const Instance> instances,
                        AccelKind accel);
 
+/// Builds the upper level again over instances of the same groups, whose transforms or groups'
+/// boxes have changed. A tree without one stays as it is. Throws Error as check_instances().
+void rebuild_instance_tree(TriangleTreeData& tree, std::span<const Instance> instances);
+
 }  // namespace pt

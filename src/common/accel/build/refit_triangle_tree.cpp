@@ -121,11 +121,7 @@ void refit_triangle_tree(TriangleTreeData& tree, std::span<const Mesh> meshes,
     if (!tree.bvh2.empty()) refit_bvh2(tree, group);
     if (!tree.cwbvh.empty()) refit_cwbvh(tree, group);
   }
-  if (tree.instances.empty()) return;
-  AccelKind accel = AccelKind::brute;
-  if (!tree.bvh2.empty()) accel = AccelKind::bvh2, tree.bvh2.resize(tree.first_top_node);
-  if (!tree.cwbvh.empty()) accel = AccelKind::cwbvh, tree.cwbvh.resize(tree.first_top_node);
-  add_instance_tree(tree, instances, accel);
+  rebuild_instance_tree(tree, instances);
 }
 
 }  // namespace pt

@@ -112,6 +112,15 @@ bool CpuRenderer::set_camera(const Camera& camera) {
   return true;
 }
 
+bool CpuRenderer::set_scene(const SceneData& scene, const SceneChanges&) {
+  const Scene view = seeded_view(scene, plan_);
+  // A path's slot has room for what a light tree needs, or none.
+  if (view.light_selector.has_tree() != scene_.light_selector.has_tree()) return false;
+  scene_ = view;
+  forget_film();
+  return true;
+}
+
 void CpuRenderer::store_film(const Film& film) {
   if (film.is_empty()) {
     sums_.reset(film_plan_, film.window.pixel_count());

@@ -43,6 +43,7 @@ class CpuRenderer : public FilmRenderer {
 
   Image image() override;  ///< without a copy of the film
   bool set_camera(const Camera& camera) override;
+  bool set_scene(const SceneData& scene, const SceneChanges& changes) override;
   void describe(RenderReport& report) const override;
 
  protected:

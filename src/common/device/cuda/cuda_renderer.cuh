@@ -31,6 +31,9 @@ class CudaRenderer : public FilmRenderer, protected CudaLauncher {
   Image image() override;
   std::unique_ptr<DeviceImage> device_image() override;
   bool set_camera(const Camera& camera) override;
+  /// For changes of materials and lights that leave all arrays their sizes, which get their new
+  /// values in place.
+  bool set_scene(const SceneData& scene, const SceneChanges& changes) override;
   void describe(RenderReport& report) const override;
   HardwareCounters count_hardware() override;
 
@@ -76,6 +79,8 @@ class CudaRenderer : public FilmRenderer, protected CudaLauncher {
 
   ChainDevice& chain_device() override { return *chains_; }
   void upload(const SceneData& scene);
+  /// Whether the scene's arrays have the sizes of those on the device.
+  bool has_same_sizes(const SceneData& scene);
   void allocate_film();
   void allocate_planes(std::uint64_t pixels);
   void load_kernels();
@@ -100,6 +105,7 @@ class CudaRenderer : public FilmRenderer, protected CudaLauncher {
   std::uint64_t primitive_count_;
   TreeFacts tree_facts_;  ///< of a tree built on the device
   std::vector<HalfSpheres> half_spheres_;
+  std::vector<std::size_t> array_sizes_;  ///< in the order of for_each_array
   FilmView film_;  ///< of the film that is rendered, the first of the arrays' elements
   CudaDownload download_;
   PathTally* tally_ = nullptr;

@@ -63,7 +63,10 @@ void CudaRenderer::upload(const SceneData& scene) {
   const auto upload_array = [&](auto*& pointer, const auto& values, const char* kind) {
     pointer = memory_.upload(kind, values);
   };
-  for_each_array(scene, scene_, upload_array);
+  for_each_array(scene, scene_, [&](auto*& pointer, const auto& values, const char* kind) {
+    upload_array(pointer, values, kind);
+    array_sizes_.push_back(values.size());
+  });
   if (traits_.geometry != Geometry::spheres_and_quads && is_device_builder(plan_.builder)) {
     const DeviceTriangleTree built = build_device_triangle_tree(
         scene.meshes, scene.instances, tree_options(traits_.accel, plan_.builder), memory_);
@@ -236,6 +239,38 @@ std::unique_ptr<DeviceImage> CudaRenderer::device_image() {
 
 bool CudaRenderer::set_camera(const Camera& camera) {
   scene_.camera = camera;
+  forget_film();
+  return true;
+}
+
+bool CudaRenderer::has_same_sizes(const SceneData& scene) {
+  Scene none;
+  std::vector<std::size_t> sizes;
+  for_each_array(scene, none,
+                 [&](auto*&, const auto& values, const char*) { sizes.push_back(values.size()); });
+  return sizes == array_sizes_;
+}
+
+bool CudaRenderer::set_scene(const SceneData& scene, const SceneChanges& changes) {
+  if (changes.move_surfaces() || changes.normals || !has_same_sizes(scene)) return false;
+  check_cuda(cudaSetDevice(device()), "cudaSetDevice");
+  Scene changed = host_view(scene, plan_.width, plan_.height);  // the numbers of the view
+  changed.mask_seed = scene_.mask_seed;
+  changed.triangles = scene_.triangles;
+  if constexpr (counts_lanes) set_lanes(changed, LaneCounter(lane_counts_));
+  std::vector<const void*> places;
+  for_each_array(scene, scene_,
+                 [&](auto*& pointer, const auto&, const char*) { places.push_back(pointer); });
+  auto place = places.begin();
+  for_each_array(scene, changed, [&](auto*& pointer, const auto& values, const std::string& kind) {
+    pointer = static_cast<std::remove_reference_t<decltype(pointer)>>(*place++);
+    if (values.empty() || (kind != "scene" && kind != "lights")) return;  // no edit reaches others
+    check_cuda(cudaMemcpy(const_cast<void*>(static_cast<const void*>(pointer)), values.data(),
+                          values.size() * sizeof *pointer, cudaMemcpyHostToDevice),
+               "uploading what has changed of the scene");
+  });
+  check_cuda(cudaDeviceSynchronize(), "uploading what has changed of the scene");
+  scene_ = changed;
   forget_film();
   return true;
 }

@@ -44,6 +44,27 @@ struct SceneNames {
   std::map<std::uint32_t, std::string> materials;     ///< by material
   std::map<std::uint32_t, std::string> emitters;      ///< emitters, by their material
   std::map<std::uint32_t, std::string> delta_lights;  ///< by its index
+  std::map<std::uint32_t, std::string> meshes;        ///< by mesh
+};
+
+/// What of a scene has changed since it was prepared. Each asks for another part of the preparation
+/// (resolve_changes and prepare_changes, prepare_scene.h).
+struct SceneChanges {
+  bool camera = false;
+  bool shading = false;    ///< parameters of materials and lights
+  bool lights = false;     ///< with shading: emission, or what a mask leaves of it
+  bool instances = false;  ///< their transforms
+  bool vertices = false;   ///< positions of meshes, which keep their triangles
+  bool normals = false;    ///< of the vertices of meshes that have some
+
+  bool operator==(const SceneChanges&) const = default;
+  bool any() const { return *this != SceneChanges(); }
+  bool any_but_camera() const { return shading || lights || instances || vertices || normals; }
+  bool move_surfaces() const { return instances || vertices; }
+  void add(const SceneChanges& more) {
+    camera |= more.camera, shading |= more.shading, lights |= more.lights;
+    instances |= more.instances, vertices |= more.vertices, normals |= more.normals;
+  }
 };
 
 /// The memory behind a LightSelector and a LightMap.

@@ -50,7 +50,7 @@ TreeFacts tree_facts(const TreeSummary& tree, std::uint64_t triangles) {
   return facts;
 }
 
-void describe_scene(const SceneData& scene, SceneFacts& facts) {
+void describe_scene(const SceneData& scene, SceneFacts& facts, bool has_new_tree) {
   facts.triangles = scene.triangle_count();
   facts.meshes = scene.meshes.size();
   facts.instances = scene.instances.size();
@@ -68,7 +68,7 @@ void describe_scene(const SceneData& scene, SceneFacts& facts) {
       {"lights", bytes(scene.light_list.lights) + bytes(scene.light_list.selection) +
                      bytes(scene.light_list.tree.pairs) + bytes(scene.light_list.tree.trail)}};
   std::erase_if(facts.memory, [](const BufferSize& buffer) { return buffer.size_bytes == 0; });
-  facts.tree = tree_facts(summarize(scene.tree), facts.triangles);
+  if (has_new_tree) facts.tree = tree_facts(summarize(scene.tree), facts.triangles);
 }
 
 std::string scene_text(const SceneFacts& facts) {

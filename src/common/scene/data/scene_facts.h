@@ -9,8 +9,9 @@
 
 namespace pt {
 
-/// `scene` is prepared.
-void describe_scene(const SceneData& scene, SceneFacts& facts);
+/// `scene` is prepared. `has_new_tree`: else the facts of the tree, which cost a walk through it,
+/// stay as they are.
+void describe_scene(const SceneData& scene, SceneFacts& facts, bool has_new_tree = true);
 
 /// Facts of the tree over the scene's `triangles`.
 TreeFacts tree_facts(const TreeSummary& tree, std::uint64_t triangles);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <set>
 
 #include "common/error/error.h"
 
@@ -31,6 +33,7 @@ class Lister {
     add_materials();
     add_lights();
     add_instances();
+    add_meshes();
     return std::move(list_);
   }
 
@@ -42,7 +45,8 @@ class Lister {
       check_finite(name, values);
       set(scene, values);
     };
-    list_.push_back({std::move(name), std::move(shape), false, get, checked});
+    const SceneChanges changes = changes_of(name);
+    list_.push_back({std::move(name), std::move(shape), changes, get, checked});
   }
 
   /// `part(scene)` is a reference to a vector or colour in the scene.
@@ -87,7 +91,6 @@ class Lister {
       add_number(
           "camera.focus_distance", [](auto& s) -> auto& { return s.camera.focus_distance; });
     }
-    for (SceneParameter& parameter : list_) parameter.is_of_camera = true;
   }
 
   void add_materials() {
@@ -171,6 +174,42 @@ class Lister {
     }
   }
 
+  /// `part(scene)` is a reference to a list of vectors in the scene.
+  template <class Part>
+  void add_rows(const std::string& name, Part part) {
+    add(
+        name, {part(scene_).size(), 3},
+        [part](const SceneData& scene) {
+          const float* const first = &part(scene).front().x;
+          return std::vector<float>(first, first + 3 * part(scene).size());
+        },
+        [part](SceneData& scene, Values v) {
+          static_assert(sizeof(Vec3) == 3 * sizeof(float));
+          std::memcpy(part(scene).data(), v.data(), v.size_bytes());
+        });
+  }
+
+  void add_meshes() {
+    std::set<std::string> taken;
+    for (std::uint32_t i = 0; i < scene_.meshes.size(); ++i) {
+      const Mesh& mesh = scene_.meshes[i];
+      if (mesh.positions.empty()) continue;
+      const auto& names = scene_.names;
+      const auto own = names.meshes.find(i);
+      const auto of_material = names.materials.find(mesh.material);
+      const std::string named = own != names.meshes.end()              ? own->second
+                                : of_material != names.materials.end() ? of_material->second
+                                                                       : fmt::format("mesh_{}", i);
+      std::string name = named;
+      for (int n = 2; !taken.insert(name).second; ++n) name = fmt::format("{}_{}", named, n);
+      add_rows(
+          "meshes." + name + ".vertices", [i](auto& s) -> auto& { return s.meshes[i].positions; });
+      if (!mesh.normals.empty())
+        add_rows(
+            "meshes." + name + ".normals", [i](auto& s) -> auto& { return s.meshes[i].normals; });
+    }
+  }
+
   /// Names of lights need not differ in their files.
   std::string unique(const std::string& name) const {
     std::string result = name;
@@ -189,6 +228,19 @@ class Lister {
 };
 
 }  // namespace
+
+SceneChanges changes_of(std::string_view parameter) {
+  const std::string_view part = parameter.substr(0, parameter.find('.'));
+  const std::string_view value = parameter.substr(parameter.rfind('.') + 1);
+  SceneChanges changes;
+  changes.camera = part == "camera";
+  changes.shading = part == "materials" || part == "lights";
+  changes.lights = part == "lights" || (part == "materials" && value == "opacity");
+  changes.instances = part == "instances";
+  changes.vertices = part == "meshes" && value == "vertices";
+  changes.normals = part == "meshes" && value == "normals";
+  return changes;
+}
 
 std::vector<SceneParameter> scene_parameters(const SceneData& scene) {
   return Lister(scene).list();

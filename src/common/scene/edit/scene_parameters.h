@@ -1,10 +1,11 @@
 // The parameters of a scene in memory that can be changed, by name: "camera.fov",
-// "materials.red.albedo", "lights.lamp.radiance", "instances.3.to_world".
+// "materials.red.albedo", "lights.lamp.radiance", "instances.3.to_world", "meshes.bust.vertices".
 #pragma once
 
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/scene/data/scene_data.h"
@@ -30,21 +31,23 @@ std::vector<MaterialValue> material_values(const MaterialDescription& material);
 /// a named material; else "material_N".
 std::vector<std::string> material_names(const SceneData& scene);
 
-// The parameters of a scene in memory that can be changed, by name: "camera.fov",
-// "materials.red.albedo", "lights.lamp.radiance", "instances.3.to_world".
+/// What a change of the parameter with this name makes stale.
+SceneChanges changes_of(std::string_view parameter);
 
 struct SceneParameter {
   std::string name;
   /// Shape of an array, row by row; empty: one number.
   std::vector<std::size_t> shape;
-  bool is_of_camera = false;
+  SceneChanges changes;
   std::function<std::vector<float>(const SceneData&)> get;
-  /// Takes as many numbers as get() returns. Throws Error for values that are not possible.
+  /// Takes as many numbers as get() returns. Throws Error for values that are not possible, having
+  /// changed nothing.
   std::function<void(SceneData&, std::span<const float>)> set;
 };
 
 /// The parameters of an unprepared scene: its camera, the parameters of its materials, the radiance
-/// of its lights, the places of its instances.
+/// of its lights, the places of its instances, the vertices of its meshes and their normals. Meshes
+/// have the names of their file, else that of their material, else "mesh_N".
 std::vector<SceneParameter> scene_parameters(const SceneData& scene);
 
 }  // namespace pt

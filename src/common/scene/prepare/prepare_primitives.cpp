@@ -49,20 +49,6 @@ void build_structure(SceneData& scene, const Bounds& others) {
   scene.quad_material = permuted(scene.quad_material, quad_order, sphere_count);
   scene.primitive_numbers = permuted(scene.primitive_numbers, order, 0);
   scene.bvh_nodes = std::move(bvh.nodes);
-  // The lights keep their order, and with it the image.
-  std::vector<std::uint32_t> place(order.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
-  for (std::uint32_t& light : scene.lights) light = place[light];
-}
-
-void list_emitters(SceneData& scene) {
-  scene.lights.clear(), scene.light_emission.clear();
-  for (std::uint32_t i = 0; i < scene.material_of.size(); ++i) {
-    const std::uint32_t emission = scene.material_records[scene.material_of[i]].emission;
-    if (emission == no_emission) continue;
-    scene.lights.push_back(i);
-    scene.light_emission.push_back(emission);
-  }
 }
 
 void join_materials(SceneData& scene) {
@@ -116,9 +102,20 @@ void make_scan(SceneData& scene) {
 
 }  // namespace
 
+void list_emitters(SceneData& scene) {
+  const auto emission_of = [&](std::uint32_t primitive) {
+    return scene.material_records[scene.material_of[primitive]].emission;
+  };
+  scene.lights.clear(), scene.light_emission.clear();
+  for (std::uint32_t i = 0; i < scene.material_of.size(); ++i) {
+    if (emission_of(i) != no_emission) scene.lights.push_back(i);
+  }
+  std::ranges::sort(scene.lights, {}, [&](auto i) { return scene.primitive_numbers[i]; });
+  for (const std::uint32_t i : scene.lights) scene.light_emission.push_back(emission_of(i));
+}
+
 void prepare_primitives(SceneData& scene, bool tree, const Bounds& others) {
   join_materials(scene);
-  list_emitters(scene);
   scene.bvh_nodes.clear();
   scene.primitive_numbers.resize(scene.primitive_count());
   std::iota(scene.primitive_numbers.begin(), scene.primitive_numbers.end(), 0u);
@@ -126,6 +123,7 @@ void prepare_primitives(SceneData& scene, bool tree, const Bounds& others) {
     build_structure(scene, others);
     join_materials(scene);
   }
+  list_emitters(scene);
   make_scan(scene);
 }
 

@@ -32,6 +32,19 @@ bool has_primitives_only(const SceneData& scene) {
          scene.media.empty() && std::ranges::none_of(scene.materials, needs_triangles);
 }
 
+namespace {
+
+/// What edits of materials and lights may change.
+void describe_shading(const SceneData& scene, SceneProperties& properties) {
+  properties.has_emitters = std::ranges::any_of(
+      scene.material_records, [](const Material& m) { return m.emission != no_emission; });
+  properties.has_rough_conductors = std::ranges::any_of(scene.materials, is_rough_conductor);
+  properties.bsdf_kinds = kinds_of(scene);
+  properties.emitters = emitter_count(scene);
+}
+
+}  // namespace
+
 SceneProperties properties_of(const SceneData& scene) {
   const auto is_masked = [](const MaterialDescription& m) { return !m.opacity.is_opaque(); };
   SceneProperties properties;
@@ -48,11 +61,7 @@ SceneProperties properties_of(const SceneData& scene) {
   properties.has_open_boundaries =
       scene.media_overlap ||
       std::ranges::any_of(scene.materials, [](const auto& m) { return m.passes; });
-  properties.has_emitters = std::ranges::any_of(
-      scene.material_records, [](const Material& m) { return m.emission != no_emission; });
-  properties.has_rough_conductors = std::ranges::any_of(scene.materials, is_rough_conductor);
-  properties.bsdf_kinds = kinds_of(scene);
-  properties.emitters = emitter_count(scene);
+  describe_shading(scene, properties);
   constexpr std::size_t group = HalfSpheres::count;
   properties.scan_bytes = (scene.spheres.size() + group - 1) / group * sizeof(HalfSpheres);
   return properties;
@@ -104,9 +113,63 @@ void prepare_scene(SceneData& scene, const ExecutionPlan& plan) {
   scene.properties.builder = plan.builder;
 }
 
+bool has_same_structure(const ExecutionPlan& a, const ExecutionPlan& b) {
+  return a.kernel_set == b.kernel_set && a.accel == b.accel && a.builder == b.builder;
+}
+
 bool prepares_alike(const ExecutionPlan& a, const ExecutionPlan& b) {
-  return a.kernel_set == b.kernel_set && a.accel == b.accel && a.builder == b.builder &&
-         a.light_selection == b.light_selection;
+  return has_same_structure(a, b) && a.light_selection == b.light_selection;
+}
+
+namespace {
+
+/// What materials say of kernels and structure: the same before and after an edit that keeps both.
+std::vector<bool> structure_by_materials(const SceneData& scene) {
+  std::vector<bool> structure{std::ranges::any_of(scene.materials, needs_triangles),
+                              !scene.opacities.empty(), scene.lights.empty()};
+  for (const Mesh& mesh : scene.meshes) structure.push_back(mesh.masked);
+  return structure;
+}
+
+bool resolve_shading(SceneData& scene, const SceneData& source, const Options& options) {
+  const std::vector<bool> before = structure_by_materials(scene);
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    const MediumBoundary media = scene.materials[i].media;  // numbered by prepare_media()
+    scene.materials[i] = source.materials[i];
+    scene.materials[i].media = media;
+  }
+  scene.delta_lights = source.delta_lights;
+  scene.sky = source.sky, scene.sun = source.sun;
+  prepare_materials(scene, options.multiple_scattering, options.integrator != IntegratorKind::mlt);
+  list_emitters(scene);
+  if (scene.traits.lighting == Lighting::full) scene.lights.clear();  // they are in light_list
+  describe_shading(scene, scene.properties);
+  return structure_by_materials(scene) == before;
+}
+
+}  // namespace
+
+bool resolve_changes(SceneData& scene, const SceneData& source, const SceneChanges& changes,
+                     const Options& options) {
+  if (changes.move_surfaces() && (scene.primitive_count() > 0 || !scene.media.empty()))
+    return false;
+  if (changes.instances) scene.instances = source.instances;
+  for (std::size_t i = 0; i < source.meshes.size(); ++i) {
+    if (changes.vertices) scene.meshes[i].positions = source.meshes[i].positions;
+    if (changes.normals) scene.meshes[i].normals = source.meshes[i].normals;
+  }
+  // A far plane matters or not by where surfaces are.
+  if ((changes.camera || changes.move_surfaces()) && !move_camera(scene, source.camera, options))
+    return false;
+  if (changes.shading && !resolve_shading(scene, source, options)) return false;
+  if (changes.vertices) scene.properties.emitters = emitter_count(scene);
+  return true;
+}
+
+bool prepare_changes(SceneData& scene, const SceneChanges& changes, const ExecutionPlan& plan,
+                     double built_cost) {
+  return scene.traits.lighting == Lighting::full &&
+         prepare_changed_triangles(scene, changes, plan, built_cost);
 }
 
 void prepare_scene(SceneData& scene, const Options& options) {

@@ -16,7 +16,9 @@ void resolve_scene(SceneData& scene, const Options& options);
 /// and lists its lights. Throws Error for what cannot be built.
 void prepare_scene(SceneData& scene, const ExecutionPlan& plan);
 
-/// Whether a scene that is prepared for one of the plans is prepared for the other.
+/// Whether a scene that is prepared for one of the plans has the tree and kernels of the other.
+bool has_same_structure(const ExecutionPlan& a, const ExecutionPlan& b);
+/// The same, and its lists of lights.
 bool prepares_alike(const ExecutionPlan& a, const ExecutionPlan& b);
 
 /// Both, with a plan for the kind of device that the options name, of the usual properties.
@@ -26,6 +28,21 @@ void prepare_scene(SceneData& scene, const Options& options = {});
 /// resolved and prepared anew, since its structure was chosen for cameras of another kind; it is of
 /// no use then. Throws Error as resolve_scene does.
 bool move_camera(SceneData& scene, const CameraParameters& camera, const Options& options);
+
+/// Takes over what has changed of `source`, which `scene` is a prepared copy of, as far as
+/// resolve_scene would. `changes.camera`: also by options. Returns false where the scene has to be
+/// resolved and prepared anew, since its structure was chosen for other materials, or spheres or
+/// media depend on what has moved; it is of no use then. Throws Error as resolve_scene does.
+bool resolve_changes(SceneData& scene, const SceneData& source, const SceneChanges& changes,
+                     const Options& options);
+
+/// Prepares again what depends on the changes that were resolved, for a plan that
+/// has_same_structure: the lists of lights, the tree over instances, or, refitted, that over
+/// triangles. It is built anew where its cost has grown by a third from `built_cost`, its
+/// TreeFacts::sah_cost when it was built; true then. The image's bits are those of a scene that is
+/// prepared anew.
+bool prepare_changes(SceneData& scene, const SceneChanges& changes, const ExecutionPlan& plan,
+                     double built_cost);
 
 /// A view of `scene` in host memory, valid while `scene` is neither changed nor destroyed.
 Scene host_view(const SceneData& scene, int width, int height);

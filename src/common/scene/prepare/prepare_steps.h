@@ -38,10 +38,18 @@ std::uint32_t camera_medium_id(const SceneData& scene);
 /// the binary BVH, which reorders the primitives. `others`: where else rays may begin.
 void prepare_primitives(SceneData& scene, bool tree, const Bounds& others = {});
 
+/// Lists the primitives that emit in the order of primitive_numbers, whatever tree is over them: on
+/// it depends the image.
+void list_emitters(SceneData& scene);
+
 /// Turns quads into triangles, builds the plan's structure over them, collects the vertices'
 /// attributes, the lights, the environment, and sets the traits. Throws Error for what cannot be
 /// built.
 void prepare_triangles(SceneData& scene, const ExecutionPlan& plan);
+
+/// See prepare_changes().
+bool prepare_changed_triangles(SceneData& scene, const SceneChanges& changes,
+                               const ExecutionPlan& plan, double built_cost);
 
 /// What tree is to be built for a structure, on either device. Embree, which builds its own, wants
 /// the triangles alone.

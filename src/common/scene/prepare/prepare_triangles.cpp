@@ -5,9 +5,11 @@
 
 #include "common/accel/build/build_nodes.h"
 #include "common/accel/build/build_triangle_tree.h"
+#include "common/accel/build/instance_tree.h"
 #include "common/accel/embree/embree_tree.h"
 #include "common/error/error.h"
 #include "common/scene/data/scene_data.h"
+#include "common/scene/data/scene_facts.h"
 #include "common/scene/prepare/list_lights.h"
 #include "common/scene/prepare/prepare_steps.h"
 
@@ -95,6 +97,43 @@ void prepare_triangles(SceneData& scene, const ExecutionPlan& plan) {
     scene.environment_map = make_environment(scene.environment.width, scene.environment.height,
                                              scene.environment.pixels, scene.environment.to_world);
   }
+}
+namespace {
+
+/// Of a refitted tree's cost over that when it was built: from here on a new tree is worth its
+/// time.
+constexpr double refit_cost_max = 4.0 / 3.0;
+
+double cost_of(const SceneData& scene) {
+  return tree_facts(summarize(scene.tree), scene.triangle_count()).sah_cost;
+}
+
+}  // namespace
+
+bool prepare_changed_triangles(SceneData& scene, const SceneChanges& changes,
+                               const ExecutionPlan& plan, double built_cost) {
+  bool is_rebuilt = false;
+  if (changes.move_surfaces()) {
+    scene.embree.reset();  // it has pointers into the tree
+    if (is_device_builder(plan.builder)) {
+      check_geometry(scene.meshes, scene.instances);
+    } else if (changes.vertices) {
+      refit_triangle_tree(scene.tree, scene.meshes, scene.instances);
+      is_rebuilt = cost_of(scene) > refit_cost_max * built_cost;
+    } else {
+      rebuild_instance_tree(scene.tree, scene.instances);
+    }
+    if (is_rebuilt) {
+      scene.tree = build_triangle_tree(scene.meshes, scene.instances,
+                                       tree_options(plan.accel, plan.builder));
+    }
+    if (plan.accel == Accel::embree) scene.embree = std::make_shared<const EmbreeTree>(scene.tree);
+  }
+  if (changes.normals) scene.corners = list_corners(scene.meshes);
+  if (changes.instances && !scene.instances.empty()) scene.to_world = instance_transforms(scene);
+  if (changes.lights || changes.move_surfaces())
+    scene.light_list = list_lights(scene, scene_bounds(scene), plan.light_selection);
+  return is_rebuilt;
 }
 
 }  // namespace pt

@@ -76,7 +76,7 @@ class MeshAdder {
     const std::vector<Part> parts = read_parts(shape, *users.front(), in_world);
     if (parts.empty()) return;
     if (in_world) {
-      for (const Part& part : parts) push(part.mesh, part.shines_back);
+      for (const Part& part : parts) push(part.mesh, part);
       return;
     }
     // Instances need a map that can be inverted.
@@ -89,7 +89,7 @@ class MeshAdder {
       for (const Part& part : parts) {
         Mesh mesh = part.mesh;
         bake(file_, user->to_world, node_place(user->node), mesh);
-        push(std::move(mesh), part.shines_back);
+        push(std::move(mesh), part);
       }
     }
     if (!instances.empty()) add_group(parts, instances);
@@ -101,6 +101,7 @@ class MeshAdder {
   struct Part {
     Mesh mesh;
     bool shines_back = false;  ///< on its back, too
+    std::string name = {};
   };
 
   /// `in_world`: a skin has put them into world space.
@@ -112,6 +113,7 @@ class MeshAdder {
     }
     in_world = !joints.empty();
     const std::string place = fmt::format("meshes[{}]", shape.mesh);
+    const std::string& name = file_.model.meshes[static_cast<std::size_t>(shape.mesh)].name;
     std::vector<Part> parts;
     for (PrimitiveMesh& primitive : read_primitives(file_, shape.mesh, shape.weights)) {
       if (in_world && primitive.influences.per_vertex > 0) {
@@ -128,15 +130,18 @@ class MeshAdder {
         uv.mesh.material = materials_.material_index(material, uv.maps);
         const bool shines_back = materials_.shines_on_both_sides(uv.mesh.material);
         colors_.tint(uv.mesh, materials_.is_unlit(material), file_.describe(place));
-        parts.push_back({std::move(uv.mesh), shines_back});
+        parts.push_back({std::move(uv.mesh), shines_back, name});
       }
     }
     return parts;
   }
 
-  void push(Mesh mesh, bool shines_back) {
+  /// `mesh`: that of the part, somewhere.
+  void push(Mesh mesh, const Part& part) {
     if (mesh.triangles.empty()) return;
-    if (shines_back) scene_.meshes.push_back(back_of(mesh));
+    if (part.shines_back) scene_.meshes.push_back(back_of(mesh));
+    if (!part.name.empty())
+      scene_.names.meshes[static_cast<std::uint32_t>(scene_.meshes.size())] = part.name;
     scene_.meshes.push_back(std::move(mesh));
   }
 
@@ -145,7 +150,7 @@ class MeshAdder {
     for (const Part& part : parts) {
       Mesh mesh = part.mesh;
       mesh.group = groups_;
-      push(std::move(mesh), part.shines_back);
+      push(std::move(mesh), part);
     }
     for (const PlacedNode* node : nodes) scene_.instances.push_back({groups_, node->to_world});
   }

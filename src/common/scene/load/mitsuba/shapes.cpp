@@ -40,7 +40,10 @@ void add_mesh(Context& context, const Object& shape, const Target& target, Mesh 
   place_mesh(mesh, to_world, face_normals, shape.boolean("flip_normals", false));
   mesh.material = target.material;
   mesh.group = target.group;
-  context.scene.meshes.push_back(std::move(mesh));
+  SceneData& scene = context.scene;
+  if (const std::string id = shape.id(); !id.empty())
+    scene.names.meshes[static_cast<std::uint32_t>(scene.meshes.size())] = id;
+  scene.meshes.push_back(std::move(mesh));
 }
 
 namespace {

@@ -162,14 +162,21 @@ Map rotation_of(const Element& element) {
   return map_of_columns(turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1}), DVec3(0.0));
 }
 
+LookAt look_at_of(const Element& element) {
+  LookAt look{vector_attribute(element, "origin"), vector_attribute(element, "target")};
+  if (element.attribute("up")) look.up = vector_attribute(element, "up");
+  return look;
+}
+
+bool is_look_at(const Element& step) { return step.tag == "lookat" || step.tag == "lookAt"; }
+
 /// The map of a camera at `origin`: z forward, y up, x to the left.
-Map lookat_of(const Element& element) {
-  const DVec3 origin = vector_attribute(element, "origin");
-  const DVec3 forward = DVec3(vector_attribute(element, "target")) - origin;
+Map map_of(const LookAt& look, const Element& element) {
+  const DVec3 origin = look.origin;
+  const DVec3 forward = DVec3(look.target) - origin;
   if (!(glm::length(forward) > 0)) fail(element, "<lookat>: target and origin are the same point");
   const DVec3 z = glm::normalize(forward);
-  DVec3 up(0, 0, 0);
-  if (element.attribute("up")) up = vector_attribute(element, "up");
+  DVec3 up = look.up;
   if (glm::length(up) == 0) up = std::abs(z.y) < 0.9 ? DVec3(0, 1, 0) : DVec3(1, 0, 0);
   const DVec3 left = glm::cross(glm::normalize(up), z);
   if (!(glm::length(left) > 1e-10)) fail(element, "<lookat>: up is parallel to the view");
@@ -180,7 +187,7 @@ Map lookat_of(const Element& element) {
 Map step_of(const Element& element) {
   if (element.tag == "matrix") return matrix_of(element);
   if (element.tag == "rotate") return rotation_of(element);
-  if (element.tag == "lookat" || element.tag == "lookAt") return lookat_of(element);
+  if (is_look_at(element)) return map_of(look_at_of(element), element);
   Map map(1.0);
   if (element.tag == "translate") {
     map[3] = glm::dvec4(DVec3(vector_attributes(element, 0.0)), 1);
@@ -209,6 +216,13 @@ Affine read_transform(const Element& element) {
     }
   }
   return result;
+}
+
+std::optional<LookAt> read_look_at(const Element& transform) {
+  const auto last =
+      std::ranges::find_if(transform.children.rbegin(), transform.children.rend(), is_look_at);
+  if (last == transform.children.rend()) return {};
+  return look_at_of(*last);
 }
 
 bool is_singular(const Affine& map) {
