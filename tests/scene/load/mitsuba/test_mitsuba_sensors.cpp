@@ -107,6 +107,31 @@ TEST(MitsubaSensor, PerspectiveRaysAreMitsubas) {
   EXPECT_NEAR(camera.distance_in_view(other.direction), 8.406346f, 1e-5f);
 }
 
+// What is changed later begins with what was written; the view is that of the matrix.
+TEST(MitsubaSensor, TheTargetIsTheWrittenOne) {
+  const auto camera_by = [](const std::string& transform) {
+    const std::string to_world = "<transform name='to_world'>" + transform + "</transform>";
+    return load_silently(sensor("perspective", to_world) + sky + wall(5, "1")).camera;
+  };
+  const std::string look = "<lookat origin='1,2,3' target='2,0,2.5' up='0,1,0.3'/>";
+  for (const std::string before : {"", "<scale x='-1'/>"}) {
+    const CameraParameters camera = camera_by(before + look);
+    EXPECT_EQ(camera.look_from, Vec3(1, 2, 3)) << before;
+    EXPECT_EQ(camera.look_at, Vec3(2, 0, 2.5f)) << before;
+    EXPECT_EQ(camera.up, Vec3(0, 1, 0.3f)) << before;
+  }
+  // Another view than the written one: along z turned about, moved, or upside down.
+  const Vec3 forward = glm::normalize(Vec3(1, -2, -0.5f));
+  const CameraParameters turned = camera_by("<rotate y='1' angle='180'/>" + look);
+  expect_near(glm::normalize(turned.look_at - turned.look_from), -forward);
+  const CameraParameters moved = camera_by(look + "<translate x='5'/>");
+  EXPECT_EQ(moved.look_from, Vec3(6, 2, 3));
+  expect_near(glm::normalize(moved.look_at - moved.look_from), forward);
+  const CameraParameters down = camera_by("<scale y='-1'/>" + look);
+  EXPECT_EQ(down.look_at, Vec3(2, 0, 2.5f));
+  EXPECT_LT(down.up.y, 0);
+}
+
 // They lie on the lines of the rays that begin on the lens.
 TEST(MitsubaSensor, RaysOfALensBeginAtTheNearPlane) {
   const std::string lens =
