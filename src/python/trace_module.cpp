@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "app/commands/trace_mesh.h"
+#include "app/commands/commands.h"
 #include "app/options/option_values.h"
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/error/error.h"

@@ -1,8 +1,13 @@
 // The commands of `ptexp`, a function each. They return the exit code and throw Error.
 #pragma once
 
+#include <string>
+
 #include "app/options/command_line.h"
+#include "common/device/devices.h"
 #include "common/mpi/ranks.h"
+#include "common/rays/trace_rays.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 
@@ -52,5 +57,24 @@ int advise_command(const AdviseCommand& command);
 /// which the next follow. What configurations have in common is kept from one to the next. Returns
 /// 0 at the end of the input, or 128 + N after signal N.
 int measure_command();
+
+// The triangles of `ptexp trace` and `ptexp rays`, and rays against them on a device.
+
+/// Throws Error for a tree, builder or variant that the device does not have.
+void check_tracing(const TreeOptions& options, const TraceRuns& runs, const DeviceInfo& device);
+
+/// Traces rays through a tree that the CPU has built.
+TraceResult trace_tree(const TriangleTreeData& tree, const RaySet& rays, const TraceRuns& runs,
+                       const DeviceInfo& device);
+
+/// Builds the tree on the device of its builder. `options.accel` must not be automatic.
+BuiltTrace build_and_trace(const SceneData& scene, const TreeOptions& options, const RaySet& rays,
+                           const TraceRuns& runs, const DeviceInfo& device);
+
+/// A .mesh file (TRBMESH1), or any scene as --scene takes it; its quads become triangles.
+SceneData load_traced_scene(const std::string& name);
+
+/// The same without its spheres. Throws Error where there are no triangles.
+SceneData load_triangles(const std::string& name);
 
 }  // namespace pt

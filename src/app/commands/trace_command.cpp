@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include "app/commands/commands.h"
-#include "app/commands/trace_mesh.h"
 #include "app/options/option_values.h"
 #include "app/render/render_outputs.h"
 #include "app/report/csv_file.h"

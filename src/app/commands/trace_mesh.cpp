@@ -1,7 +1,6 @@
-#include "app/commands/trace_mesh.h"
-
 #include <fmt/format.h>
 
+#include "app/commands/commands.h"
 #include "app/render/make_renderer.h"
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/error/error.h"
