@@ -30,7 +30,7 @@ LAYERS = [
     # The Python module, which is given what the program is.
     ("python", ["python/*"], ["app", "edit", "distribute", *SCHEDULES, *COMMON]),
     # The page of a render in progress.
-    ("view", ["view/*"], ["app", *SCHEDULES, *COMMON]),
+    ("view", ["view/*"], ["app", "edit", *SCHEDULES, *COMMON]),
     # The program: commands, the command line, reports.
     ("app", ["app/*"], ["mpi", "distribute", *SCHEDULES, *COMMON]),
     # Processes of one job, whose devices work for the first one.

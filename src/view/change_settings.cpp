@@ -1,9 +1,11 @@
 #include "view/change_settings.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -25,10 +27,6 @@ double number(const Json& value, const std::string& key, double least, double mo
   return x;
 }
 
-[[noreturn]] void refuse_key(const std::string& key, const char* expected) {
-  throw Error(fmt::format("\"{}\": no such key; expected {}", key, expected));
-}
-
 Orbit read_orbit(const Json& json) {
   if (!json.is_object())
     throw Error("\"orbit\": expected an object with \"yaw\", \"pitch\" and \"zoom\"");
@@ -41,18 +39,95 @@ Orbit read_orbit(const Json& json) {
     else if (key == "zoom")
       orbit.zoom = number(value, key, 1e-3, 1e3);
     else
-      refuse_key(key, "\"yaw\", \"pitch\" or \"zoom\"");
+      throw Error(fmt::format("\"{}\": no such key; expected \"yaw\", \"pitch\" or \"zoom\"", key));
   }
   return orbit;
 }
 
+std::string text_of(const Json& json) { return json.is_string() ? json.get<std::string>() : ""; }
+
 std::vector<Mode> read_mode(const Json& json) {
-  const std::string name = json.is_string() ? json.get<std::string>() : "";
+  const std::string name = text_of(json);
   if (name == "split") return split_modes;
   for (const auto& mode : enum_names<Mode>)
     if (mode.name == name) return {mode.value};
   throw Error(fmt::format("\"mode\": expected one of {}, split", joined_names<Mode>(", ")));
 }
+
+ToneCurve read_curve(const Json& json) {
+  for (const auto& curve : enum_names<ToneCurve>)
+    if (curve.name == text_of(json)) return curve.value;
+  throw Error(fmt::format("\"curve\": expected one of {}", joined_names<ToneCurve>(", ")));
+}
+
+std::string read_layer(const Json& json) {
+  std::string name = text_of(json);
+  if (layer_bit(name)) return name;
+  throw Error(fmt::format("\"layer\": expected one of {}", fmt::join(layer_names(), ", ")));
+}
+
+bool read_flag(const Json& json, const std::string& key) {
+  if (!json.is_boolean()) throw Error(fmt::format("\"{}\": expected true or false", key));
+  return json.get<bool>();
+}
+
+int whole_number(const Json& json, const std::string& key, int most) {
+  if (!json.is_number_integer() || json < 1 || json > most)
+    throw Error(fmt::format("\"{}\": expected a whole number from 1 to {}", key, most));
+  return json.get<int>();
+}
+
+ImageSize read_size(const Json& json) {
+  if (!json.is_array() || json.size() != 2)
+    throw Error("\"size\": expected width and height, such as [640, 480]");
+  return {whole_number(json[0], "size", image_side_max),
+          whole_number(json[1], "size", image_side_max)};
+}
+
+ParameterValues read_parameters(const Json& json) {
+  if (!json.is_object())
+    throw Error("\"parameters\": expected an object of names and values, or null");
+  ParameterValues values;
+  for (const auto& [name, value] : json.items()) {
+    const Json list = value.is_array() ? value : Json::array({value});
+    for (const Json& one : list) {
+      constexpr double most = std::numeric_limits<float>::max();
+      if (!one.is_number() || !(std::abs(one.get<double>()) <= most))
+        throw Error(fmt::format("\"parameters\": \"{}\": expected numbers", name));
+      values[name].push_back(one.get<float>());
+    }
+  }
+  return values;
+}
+
+/// A key of the JSON, and how its value is read.
+struct Key {
+  std::string_view name;
+  void (*read)(const Json& value, const std::string& key, SettingsChange& change);
+};
+using Text = const std::string&;
+
+constexpr Key keys[] = {
+    {"orbit", [](const Json& v, Text, SettingsChange& c) { c.orbit = read_orbit(v); }},
+    {"mode", [](const Json& v, Text, SettingsChange& c) { c.modes = read_mode(v); }},
+    {"size", [](const Json& v, Text, SettingsChange& c) { c.size = read_size(v); }},
+    {"scale", [](const Json& v, Text key,
+                 SettingsChange& c) { c.scale = number(v, key, scale_min, scale_max); }},
+    {"spp",
+     [](const Json& v, Text key, SettingsChange& c) {
+       c.spp = whole_number(v, key, std::numeric_limits<int>::max());
+     }},
+    {"paused", [](const Json& v, Text key, SettingsChange& c) { c.is_paused = read_flag(v, key); }},
+    {"layer", [](const Json& v, Text, SettingsChange& c) { c.layer = read_layer(v); }},
+    {"exposure",
+     [](const Json& v, Text key, SettingsChange& c) {
+       c.exposure = static_cast<float>(number(v, key, -100, 100));
+     }},
+    {"curve", [](const Json& v, Text, SettingsChange& c) { c.curve = read_curve(v); }},
+    {"parameters", [](const Json& v, Text, SettingsChange& c) {
+       c.resets_parameters = v.is_null();
+       if (!v.is_null()) c.parameters = read_parameters(v);
+     }}};
 
 }  // namespace
 
@@ -60,15 +135,15 @@ SettingsChange read_change(std::string_view text) {
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) throw Error("settings: expected a JSON object");
   SettingsChange change;
-  for (const auto& [key, value] : json.items()) {
-    if (key == "orbit")
-      change.orbit = read_orbit(value);
-    else if (key == "mode")
-      change.modes = read_mode(value);
-    else if (key == "exposure")
-      change.exposure = static_cast<float>(number(value, key, -100, 100));
-    else
-      refuse_key(key, "\"orbit\", \"mode\" or \"exposure\"");
+  for (const auto& [name, value] : json.items()) {
+    const auto key = std::ranges::find(keys, name, &Key::name);
+    if (key == std::end(keys)) {
+      std::string names;
+      for (const Key& one : keys)
+        names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", one.name);
+      throw Error(fmt::format("\"{}\": no such key; expected one of {}", name, names));
+    }
+    key->read(value, name, change);
   }
   return change;
 }
@@ -119,9 +194,74 @@ CameraParameters orbit_camera(const CameraParameters& camera, const Orbit& orbit
   CameraParameters moved = camera;
   const auto zoom = static_cast<float>(orbit.zoom);
   moved.look_from = Vec3(Wide(camera.look_at) + orbit.zoom * glm::length(offset.all) * direction);
-  moved.focus_distance *= zoom;
+  if (camera.aperture > 0) moved.focus_distance *= zoom;  // else the options cannot say it
   moved.orthographic_size *= zoom;
   return moved;
+}
+
+ImageSize scaled(const ImageSize& size, double scale) {
+  const auto side = [&](int pixels) {
+    return static_cast<int>(std::clamp(std::round(pixels * scale), 1.0, double{image_side_max}));
+  };
+  return {side(size.width), side(size.height)};
+}
+
+namespace {
+
+std::string text_of(const Vec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+}  // namespace
+
+std::string camera_options(const CameraParameters& camera) {
+  std::string text = fmt::format("--look-from {} --look-at {} --up {}", text_of(camera.look_from),
+                                 text_of(camera.look_at), text_of(camera.up));
+  // The option is of the vertical angle; along another axis the scene has it.
+  if (!camera.orthographic && camera.fov_axis == FovAxis::vertical)
+    text += fmt::format(" --fov {}", camera.fov_degrees);
+  if (!camera.orthographic && camera.aperture > 0)
+    text +=
+        fmt::format(" --aperture {} --focus-distance {}", camera.aperture, camera.focus_distance);
+  return text;
+}
+
+std::string camera_xml(const CameraParameters& camera, const ImageSize& size) {
+  const bool has_lens = !camera.orthographic && camera.aperture > 0;
+  std::string text = fmt::format("<sensor type=\"{}\">\n", camera.orthographic ? "orthographic"
+                                                           : has_lens          ? "thinlens"
+                                                                               : "perspective");
+  const auto add = [&](const char* kind, const char* name, auto value) {
+    text += fmt::format("  <{} name=\"{}\" value=\"{}\"/>\n", kind, name, value);
+  };
+  constexpr const char* axes[] = {"y", "x", "diagonal", "smaller", "larger"};  // as FovAxis
+  if (!camera.orthographic) {
+    add("float", "fov", camera.fov_degrees);
+    add("string", "fov_axis", axes[static_cast<int>(camera.fov_axis)]);
+  }
+  if (has_lens) {
+    add("float", "aperture_radius", camera.aperture / 2);
+    add("float", "focus_distance", camera.focus_distance);
+  }
+  // Mitsuba's own planes, 0.01 and 10,000, might cut the scene.
+  add("float", "near_clip", std::max(camera.near_clip, 1e-4f));
+  add("float", "far_clip", std::min(camera.far_clip, 1e8f));
+  if (camera.principal_point.x != 0 || camera.principal_point.y != 0) {
+    add("float", "principal_point_offset_x", camera.principal_point.x);
+    add("float", "principal_point_offset_y", camera.principal_point.y);
+  }
+  text += "  <transform name=\"to_world\">\n";
+  const Vec2 scale = camera.orthographic ? camera.orthographic_size : Vec2(1.0f);
+  if (camera.mirrored || camera.orthographic) {
+    text += fmt::format("    <scale x=\"{}\" y=\"{}\"/>\n", camera.mirrored ? -scale.x : scale.x,
+                        scale.y);
+  }
+  text += fmt::format("    <lookat origin=\"{}\" target=\"{}\" up=\"{}\"/>\n  </transform>\n",
+                      text_of(camera.look_from), text_of(camera.look_at), text_of(camera.up));
+  return text + fmt::format(
+                    "  <film type=\"hdrfilm\">\n"
+                    "    <integer name=\"width\" value=\"{}\"/>\n"
+                    "    <integer name=\"height\" value=\"{}\"/>\n"
+                    "  </film>\n</sensor>\n",
+                    size.width, size.height);
 }
 
 }  // namespace pt

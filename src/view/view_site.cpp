@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <sys/random.h>
 
+#include <array>
+#include <cctype>
 #include <charconv>
 #include <nlohmann/json.hpp>
 
@@ -53,35 +55,80 @@ std::string parameter(const HttpRequest& request, const char* name) {
 }
 
 const char* name_of_status(LiveStatus status) {
-  constexpr const char* names[] = {"rendering", "idle", "done", "failed"};
+  constexpr const char* names[] = {"rendering", "idle", "paused", "done", "failed"};
   return names[static_cast<int>(status)];
 }
 
 OrderedJson view_json(const LiveView& view) {
-  return {{"mode", to_string(view.mode)}, {"samples", view.samples},
-          {"image", view.image_number},   {"pass_samples", view.pass_samples},
-          {"pass_ms", view.pass_ms},      {"msamples_per_s", view.msamples_per_s}};
+  OrderedJson json = {{"mode", to_string(view.mode)},   {"samples", view.samples},
+                      {"image", view.image_number},     {"pass_samples", view.pass_samples},
+                      {"pass_ms", view.pass_ms},        {"msamples_per_s", view.msamples_per_s},
+                      {"kernel_ms", view.kernel_ms},    {"wall_ms", view.wall_ms},
+                      {"used", view.decision.value},    {"why", view.decision.reason},
+                      {"stages", OrderedJson::object()}};
+  for (const StageTime& stage : view.stages) json["stages"][stage.stage] = stage.time_ms;
+  json["error"] = view.relative_error ? OrderedJson(*view.relative_error) : OrderedJson();
+  return json;
+}
+
+OrderedJson ratio_json(const std::optional<TimeRatio>& ratio) {
+  if (!ratio) return nullptr;
+  return {{"value", ratio->value},
+          {"low", ratio->low},
+          {"high", ratio->high},
+          {"rounds", ratio->rounds}};
+}
+
+/// A file's name need not be UTF-8.
+std::string json_text(const OrderedJson& json) {
+  return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
 std::string state_json(const LiveState& state, const LiveRender& live) {
   OrderedJson views = OrderedJson::array();
   for (const LiveView& view : state.views) views.push_back(view_json(view));
-  const Orbit& orbit = state.settings.orbit;
+  const LiveSettings& settings = state.settings;
+  const Orbit& orbit = settings.orbit;
   const PitchRange pitch = pitch_range(live.camera());
-  const OrderedJson json = {
-      {"version", state.version},
-      {"scene", live.scene()},
-      {"device", live.device()},
-      {"spp", live.samples_wanted()},
-      {"status", name_of_status(state.status)},
-      {"error", state.error},
-      {"mode", mode_name(state.settings.modes)},
-      {"exposure", state.exposure},
-      {"orbit", {{"yaw", orbit.yaw}, {"pitch", orbit.pitch}, {"zoom", orbit.zoom}}},
-      {"pitch_range", {pitch.least, pitch.most}},
-      {"views", views}};
-  // A file's name need not be UTF-8.
-  return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+  const CameraParameters camera = orbit_camera(live.camera(), orbit);
+  return json_text(
+      {{"version", state.version},
+       {"scene", live.scene()},
+       {"device", live.device()},
+       {"spp", state.spp},
+       {"status", name_of_status(state.status)},
+       {"error", state.error},
+       {"mode", mode_name(settings.modes)},
+       {"size", {settings.size.width, settings.size.height}},
+       {"scale", settings.scale},
+       {"paused", state.is_paused},
+       {"layer", state.display.layer},
+       {"exposure", state.display.exposure},
+       {"curve", to_string(state.display.curve)},
+       {"orbit", {{"yaw", orbit.yaw}, {"pitch", orbit.pitch}, {"zoom", orbit.zoom}}},
+       {"pitch_range", {pitch.least, pitch.most}},
+       {"camera",
+        {{"options", camera_options(camera)}, {"xml", camera_xml(camera, settings.size)}}},
+       {"parameters", OrderedJson(settings.parameters)},
+       {"ratio", ratio_json(state.ratio)},
+       {"layers", layer_names()},
+       {"views", views}});
+}
+
+/// The scene's name as a file's.
+std::string file_name(const std::string& scene, const std::string& ending) {
+  std::string name = scene.substr(scene.find_last_of('/') + 1);
+  if (const std::size_t dot = name.rfind('.'); dot != std::string::npos && dot > 0)
+    name.resize(dot);
+  for (char& c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '_') c = '_';
+  return name + "." + ending;
+}
+
+const LiveView* view_of(const LiveState& state, const std::string& mode) {
+  for (const LiveView& view : state.views)
+    if (view.image && to_string(view.mode) == mode) return &view;
+  return nullptr;
 }
 
 }  // namespace
@@ -112,8 +159,9 @@ std::optional<HttpReply> ViewSite::refuse(const HttpRequest& request) {
   if (!contains(hosts_, request.host))
     return text_reply(403, fmt::format("Host: expected {}", hosts_.front()));
   const std::string name = name_of(request);
+  constexpr std::array readable = {"", "state", "image", "save", "parameters"};
   const bool is_get =
-      request.method == "GET" && (name.empty() || name == "state" || name == "image");
+      request.method == "GET" && std::ranges::find(readable, name) != readable.end();
   const bool is_post = request.method == "POST" && (name == "settings" || name == "leave");
   if (!is_get && !is_post) return nothing_there();
   constexpr std::string_view scheme = "http://";
@@ -129,6 +177,8 @@ HttpReply ViewSite::answer(const HttpRequest& request) {
   if (name.empty()) return page();
   if (name == "state") return state(request);
   if (name == "image") return image(request);
+  if (name == "save") return save(request);
+  if (name == "parameters") return parameters();
   if (name == "settings") return settings(request);
   return name == "leave" ? leave(request) : nothing_there();
 }
@@ -166,31 +216,70 @@ HttpReply ViewSite::state(const HttpRequest& request) {
 HttpReply ViewSite::image(const HttpRequest& request) {
   const LiveState now = live_.state();
   const std::string mode = parameter(request, "mode");
-  const auto view = std::ranges::find_if(
-      now.views, [&](const LiveView& one) { return to_string(one.mode) == mode; });
-  if (view == now.views.end() || !view->image) return nothing_there();
+  const LiveView* const view = view_of(now, mode);
+  const auto is_mode = [&](const auto& one) { return one.name == mode; };
+  if (std::ranges::none_of(enum_names<Mode>, is_mode)) return nothing_there();
+  if (view == nullptr) return {.status = 204};
   const std::lock_guard lock(pictures_mutex_);
-  Picture& picture = pictures_[view->mode];
-  if (picture.image_number != view->image_number || picture.exposure != now.exposure) {
-    picture = {view->image_number, now.exposure,
-               encode_png_fast(*view->image, {.exposure = now.exposure})};
+  Encoded& encoded = pictures_[view->mode];
+  if (encoded.image_number != view->image_number || encoded.display != now.display) {
+    const auto picture = make_picture(*view->image, now.display, view->image_samples);
+    if (!picture) return {.status = 204};  // the first pass that has the layer is on its way
+    const auto& range = picture->range;
+    encoded = {view->image_number, now.display,
+               encode_png_fast(picture->image, {.exposure = picture->exposure}),
+               range ? fmt::format("{} {}", (*range)[0], (*range)[1]) : ""};
   }
-  return {200, "image/png", picture.png};
+  HttpReply reply{200, "image/png", encoded.png};
+  if (!encoded.range.empty()) reply.headers["X-Range"] = encoded.range;
+  return reply;
+}
+
+HttpReply ViewSite::save(const HttpRequest& request) const {
+  const LiveState now = live_.state();
+  const LiveView* const view = view_of(now, parameter(request, "mode"));
+  const std::string form = parameter(request, "form");
+  if (view == nullptr) return nothing_there();
+  if (form != "png" && form != "exr") return text_reply(400, "form: expected png or exr");
+  HttpReply reply{200, form == "png" ? "image/png" : "image/x-exr"};
+  reply.headers["Content-Disposition"] =
+      fmt::format("attachment; filename=\"{}\"", file_name(live_.scene(), form));
+  const ImageMetadata header = live_.header_of(*view);
+  if (form == "exr") {
+    reply.body = exr_codec.encode(*view->image, header, {});
+    return reply;
+  }
+  const auto picture = make_picture(*view->image, now.display, view->image_samples);
+  if (!picture) return nothing_there();
+  reply.body = png_codec.encode(picture->image, header, {.exposure = picture->exposure});
+  return reply;
+}
+
+HttpReply ViewSite::parameters() const {
+  OrderedJson list = OrderedJson::array();
+  for (const LiveParameter& one : live_.parameters())
+    list.push_back({{"name", one.parameter.name}, {"value", one.value}});
+  return {200, "application/json", json_text(list)};
 }
 
 HttpReply ViewSite::settings(const HttpRequest& request) {
-  SettingsChange change;
+  const std::lock_guard lock(settings_mutex_);
+  LiveSettings settings = live_.state().settings;
   try {
-    change = read_change(request.body);
+    const SettingsChange change = read_change(request.body);
+    settings.orbit = change.orbit.value_or(settings.orbit);
+    settings.modes = change.modes.value_or(settings.modes);
+    settings.size = change.size.value_or(settings.size);
+    settings.scale = change.scale.value_or(settings.scale);
+    if (change.resets_parameters) settings.parameters.clear();
+    for (const auto& [name, values] : change.parameters) settings.parameters[name] = values;
+    live_.change(std::move(settings));
+    live_.change_display(change);
+    if (change.spp) live_.change_samples(*change.spp);
+    if (change.is_paused) live_.set_paused(*change.is_paused);
   } catch (const Error& error) {
     return text_reply(400, error.what());
   }
-  const std::lock_guard lock(settings_mutex_);
-  LiveSettings settings = live_.state().settings;
-  if (change.orbit) settings.orbit = *change.orbit;
-  if (change.modes) settings.modes = *change.modes;
-  live_.change(settings);
-  if (change.exposure) live_.change_exposure(*change.exposure);
   return {.status = 204};
 }
 

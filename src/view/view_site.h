@@ -15,8 +15,8 @@ namespace pt {
 /// Error.
 int view_command(const ViewCommand& command);
 
-/// src/view/page.html, which the build makes a string of. NONCE stands in it where the word of its
-/// Content-Security-Policy belongs.
+/// src/view/page.html with page.js, which the build makes a string of. NONCE stands in it where the
+/// word of its Content-Security-Policy belongs.
 std::string_view page_html();
 
 /// Who looks at a page: those whose browsers keep asking for news. Times are seconds of any clock.
@@ -53,8 +53,11 @@ std::string random_token();
 /// GET             | the page
 /// GET state       | JSON; `after=VERSION`: waits up to a second for another version;
 ///                 | `viewer=NAME`: the viewer, who is present until the name is silent
-/// GET image       | `mode=MODE`: PNG; 404 while there is none
-/// POST settings   | JSON: any of "orbit", "mode", "exposure"; 400 and a sentence for others
+/// GET image       | `mode=MODE`: PNG of what is shown, X-Range: what the colours of numbers begin
+///                 | and end with; 204 while there is none
+/// GET save        | `mode=MODE`, `form=png`: the same with a header; `form=exr`: radiance and
+/// layers GET parameters  | JSON: names and values of materials and lights, as the scene was loaded
+/// POST settings   | JSON as read_change takes it; 400 and a sentence for others
 /// POST leave      | `viewer=NAME` is gone
 class ViewSite : public HttpSite {
  public:
@@ -69,16 +72,18 @@ class ViewSite : public HttpSite {
 
  private:
   /// The encoded image, for all viewers.
-  struct Picture {
+  struct Encoded {
     std::uint64_t image_number = 0;
-    float exposure = 0;
-    std::string png;
+    Display display;
+    std::string png, range;
   };
 
   std::string name_of(const HttpRequest& request) const;
   HttpReply page() const;
   HttpReply state(const HttpRequest& request);
   HttpReply image(const HttpRequest& request);
+  HttpReply save(const HttpRequest& request) const;
+  HttpReply parameters() const;
   HttpReply settings(const HttpRequest& request);
   HttpReply leave(const HttpRequest& request);
 
@@ -88,7 +93,7 @@ class ViewSite : public HttpSite {
   const std::function<double()> clock_;
   std::mutex viewers_mutex_, pictures_mutex_, settings_mutex_;
   Viewers viewers_;
-  std::map<Mode, Picture> pictures_;
+  std::map<Mode, Encoded> pictures_;
 };
 
 }  // namespace pt

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "common/film/aov.h"
 #include "view/change_settings.h"
 #include "view/view_site.h"
 
@@ -24,7 +25,22 @@ TEST(ChangeSettings, ReadsWhatIsThere) {
   EXPECT_EQ(change.orbit, (Orbit{-10.5, 5, 2}));
   EXPECT_EQ(change.modes, (std::vector{Mode::wavefront, Mode::megakernel}));
   EXPECT_EQ(change.exposure, 1.5f);
-  EXPECT_FALSE(read_change("{}").orbit);
+  const SettingsChange none = read_change("{}");
+  EXPECT_FALSE(none.orbit || none.modes || none.size || none.scale || none.spp || none.is_paused ||
+               none.layer || none.exposure || none.curve || none.resets_parameters);
+  EXPECT_TRUE(none.parameters.empty());
+  const SettingsChange rest = read_change(
+      R"({"size": [640, 480], "scale": 0.5, "spp": 99, "paused": true, "layer": "depth",
+          "curve": "agx", "parameters": {"a.b": 2, "c.d": [1, 2.5, -3]}})");
+  EXPECT_EQ(rest.size, (ImageSize{640, 480}));
+  EXPECT_EQ(rest.scale, 0.5);
+  EXPECT_EQ(rest.spp, 99);
+  EXPECT_EQ(rest.is_paused, true);
+  EXPECT_EQ(rest.layer, "depth");
+  EXPECT_EQ(rest.curve, ToneCurve::agx);
+  EXPECT_EQ(rest.parameters, (ParameterValues{{"a.b", {2}}, {"c.d", {1, 2.5f, -3}}}));
+  EXPECT_FALSE(rest.resets_parameters);
+  EXPECT_TRUE(read_change(R"({"parameters": null})").resets_parameters);
   EXPECT_EQ(read_change(R"({"mode": "serial"})").modes, std::vector{Mode::serial});
 }
 
@@ -45,13 +61,55 @@ TEST(ChangeSettings, NamesTheKeyAndWhatWasExpected) {
       {R"({"mode": "fast"})",
        "\"mode\": expected one of auto, serial, megakernel, wavefront, split"},
       {R"({"scene": "x"})",
-       "\"scene\": no such key; expected \"orbit\", \"mode\" or \"exposure\""}};
+       "\"scene\": no such key; expected one of \"orbit\", \"mode\", \"size\", \"scale\", "
+       "\"spp\", \"paused\", \"layer\", \"exposure\", \"curve\", \"parameters\""},
+      {R"({"size": [640]})", "\"size\": expected width and height, such as [640, 480]"},
+      {R"({"size": 640})", "\"size\": expected width and height, such as [640, 480]"},
+      {R"({"size": [640.5, 3]})", "\"size\": expected a whole number from 1 to 8192"},
+      {R"({"spp": "9"})", "\"spp\": expected a whole number from 1 to 2147483647"},
+      {R"({"paused": 1})", "\"paused\": expected true or false"},
+      {R"({"curve": "filmic"})", "\"curve\": expected one of srgb, neutral, agx, aces"},
+      {R"({"parameters": [1]})", "\"parameters\": expected an object of names and values, or null"},
+      {R"({"parameters": {"a": ["1"]}})", "\"parameters\": \"a\": expected numbers"},
+      {R"({"parameters": {"a": [[1]]}})", "\"parameters\": \"a\": expected numbers"},
+      {R"({"parameters": {"a": 1e39}})", "\"parameters\": \"a\": expected numbers"},
+      {R"({"parameters": {"a": null}})", "\"parameters\": \"a\": expected numbers"}};
   for (const auto& [json, message] : cases) EXPECT_EQ(refusal(json), message) << json;
+}
+
+TEST(ChangeSettings, NamesTheLayersThatThereAre) {
+  const std::string said = refusal(R"({"layer": "alpha"})");
+  for (const AovInfo& info : aov_table) {
+    EXPECT_NE(said.find(info.name), std::string::npos) << said;
+    EXPECT_EQ(layer_bit(info.name), info.bit);
+  }
+  EXPECT_EQ(said.find("\"layer\": expected one of color, albedo"), 0u) << said;
+  EXPECT_EQ(layer_bit("color"), 0u);
+  EXPECT_EQ(layer_bit("alpha"), std::nullopt);
+  EXPECT_EQ(layer_names().size(), aov_table.size() + 1);
+}
+
+TEST(ChangeSettings, TakesBothEndsOfWholeNumbers) {
+  EXPECT_EQ(refusal(R"({"size": [1, 8192]})"), "");
+  EXPECT_NE(refusal(R"({"size": [0, 8192]})"), "");
+  EXPECT_NE(refusal(R"({"size": [1, 8193]})"), "");
+  EXPECT_EQ(refusal(R"({"spp": 2147483647})"), "");
+  EXPECT_NE(refusal(R"({"spp": 2147483648})"), "");
+  EXPECT_NE(refusal(R"({"spp": 18446744073709551615})"), "");
+  EXPECT_NE(refusal(R"({"spp": 0})"), "");
+  EXPECT_NE(refusal(R"({"spp": -1})"), "");
+}
+
+TEST(ChangeSettings, AScaledImageHasPixels) {
+  EXPECT_EQ(scaled({640, 480}, 0.5), (ImageSize{320, 240}));
+  EXPECT_EQ(scaled({3, 1}, 0.25), (ImageSize{1, 1}));
+  EXPECT_EQ(scaled({8000, 5}, 4), (ImageSize{8192, 20}));
 }
 
 TEST(ChangeSettings, TakesBothEndsOfEachRange) {
   const std::pair<const char*, std::pair<double, double>> ranges[] = {
       {R"({{"exposure": {}}})", {-100, 100}},
+      {R"({{"scale": {}}})", {1.0 / 16, 4}},
       {R"({{"orbit": {{"yaw": {}}}}})", {-1e6, 1e6}},
       {R"({{"orbit": {{"pitch": {}}}}})", {-180, 180}},
       {R"({{"orbit": {{"zoom": {}}}}})", {1e-3, 1e3}}};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
@@ -287,12 +288,14 @@ TEST(LiveRender, TakesOptionsOfOneModeInAll) {
 
 TEST(LiveRender, AnotherExposureRendersNothing) {
   WatchedRender live(settings_of({{"exposure", "1.5"}}), {});
-  EXPECT_EQ(live.state().exposure, 1.5f);
+  EXPECT_EQ(live.state().display.exposure, 1.5f);
   live.set_watched(true);
   const LiveState before = wait_until(live, is_done);
-  live.change_exposure(-2);
+  SettingsChange darker;
+  darker.exposure = -2.0f, darker.curve = ToneCurve::aces;
+  live.change_display(darker);
   const LiveState after = live.state();
-  EXPECT_EQ(after.exposure, -2);
+  EXPECT_EQ(after.display, (Display{"color", -2, ToneCurve::aces}));
   EXPECT_NE(after.version, before.version);
   EXPECT_EQ(after.views.front().image_number, before.views.front().image_number);
 }
@@ -319,6 +322,256 @@ TEST(LiveRender, EndsAtOnceAndAnswersWhoWaits) {
   });
   live.end();
   waiter.join();
+}
+
+TEST(LiveRender, APausedOneRendersNothingAndGoesOn) {
+  WatchedRender live(settings_of({{"spp", "1000000"}}), {});
+  live.set_watched(true);
+  wait_until(live, [](const LiveState& state) { return state.views.front().samples > 2; });
+  live.set_paused(true);
+  EXPECT_EQ(live.state().status, LiveStatus::paused);
+  live.wait(live.state().version, 0.3);  // the pass that was at work
+  const LiveState paused = live.state();
+  EXPECT_EQ(live.wait(paused.version, 0.3).version, paused.version);
+  live.change({paused.settings.modes, {10, 0, 1}});  // waits as well
+  EXPECT_EQ(live.wait(live.state().version, 0.3).views.front().samples, 0);
+  live.set_paused(false);
+  wait_until(live, [](const LiveState& state) { return state.views.front().samples > 2; });
+}
+
+TEST(LiveRender, MoreSamplesAreAddedToThoseThatAreThere) {
+  for (const char* const sampler : {"independent", "stratified"}) {
+    WatchedRender live(settings_of({{"spp", "5"}, {"sampler", sampler}}), {});
+    live.set_watched(true);
+    const LiveState before = wait_until(live, is_done);
+    live.change_samples(21);
+    const LiveState begun = live.state();
+    EXPECT_EQ(begun.spp, 21);
+    if (sampler == std::string("independent")) {
+      EXPECT_GE(begun.views.front().samples, 5);
+    } else {
+      EXPECT_LT(begun.views.front().samples, 21) << "strata of other samples";
+    }
+    const LiveState state = wait_until(live, is_done);
+    EXPECT_EQ(state.views.front().samples, 21);
+    expect_same(*state.views.front().image, rendered({{"spp", "21"}, {"sampler", sampler}}));
+  }
+}
+
+TEST(LiveRender, HasTheSizeAndScaleThatAreChosen) {
+  WatchedRender live(settings_of({{"crop", "8,6,24,18"}}), {});
+  EXPECT_EQ(live.state().settings.size, (ImageSize{32, 24}));
+  live.set_watched(true);
+  wait_until(live, is_done);
+  LiveSettings settings = live.state().settings;
+  settings.size = {80, 40}, settings.scale = 0.5;
+  live.change(settings);
+  const Words smaller{{"width", "40"}, {"height", "20"}, {"crop", "10,5,30,15"}};
+  expect_same(*wait_until(live, is_done).views.front().image, rendered(smaller));
+  settings.scale = 2;
+  live.change(settings);
+  const Image image = *wait_until(live, is_done).views.front().image;
+  EXPECT_EQ(image.width, 80);
+  EXPECT_EQ(image.height, 40);
+}
+
+TEST(LiveRender, RendersALayerWhereItIsLookedAt) {
+  WatchedRender live(settings_of(), {});
+  live.set_watched(true);
+  const LiveState before = wait_until(live, is_done);
+  const auto choose = [&](const char* layer) {
+    SettingsChange change;
+    change.layer = layer;
+    live.change_display(change);
+    return wait_until(live, is_done).views.front();
+  };
+  EXPECT_EQ(choose("rays").image, before.views.front().image) << "it has that one already";
+  const LiveView depth = choose("depth");
+  expect_same(*depth.image, *before.views.front().image);
+  const auto& layers = depth.image->layers;
+  const auto found = std::ranges::find(layers, "depth", &ImageLayer::name);
+  ASSERT_NE(found, layers.end());
+  const Image expected = rendered({{"output", "page.exr"}, {"aov", "depth"}});
+  EXPECT_EQ(found->values, expected.layers.front().values);
+  EXPECT_EQ(choose("color").image, depth.image) << "and keeps it";
+}
+
+// Against a scene that was loaded with the other values.
+TEST(LiveRender, EditsMaterialsAndLights) {
+  WatchedRender live(settings_of(), {});
+  const auto& parameters = live.parameters();
+  const auto find = [&](const std::string& end) {
+    return std::ranges::find_if(
+        parameters, [&](const LiveParameter& one) { return one.parameter.name.ends_with(end); });
+  };
+  ASSERT_NE(find("albedo"), parameters.end());
+  const std::string albedo = find("albedo")->parameter.name;
+  const std::string lamp = find("_3.radiance")->parameter.name;
+  live.set_watched(true);
+  wait_until(live, is_done);
+  LiveSettings settings = live.state().settings;
+  settings.parameters = {{albedo, {0.1f, 0.2f, 0.9f}}, {lamp, {3, 4, 5}}};
+  live.change(settings);
+  const LiveState edited = wait_until(live, is_done);
+  const RenderCommand command = make_render_command(settings_of());
+  RenderSession session(command, {});
+  SceneData& scene = session.change_scene();
+  scene.materials[0][&Diffuse::albedo].value = {0.1f, 0.2f, 0.9f};
+  scene.materials[3].emission.radiance = {3, 4, 5};
+  MeasureHooks hooks;
+  hooks.stop = [] { return false; };
+  expect_same(*edited.views.front().image, session.render(command, hooks, {}).image);
+  settings.parameters.erase(albedo);  // one is reset; a mode joins
+  settings.modes = {Mode::serial, Mode::wavefront};
+  live.change(settings);
+  session.change_scene().materials[0][&Diffuse::albedo].value = Color(0.73f);
+  const LiveState state = wait_until(live, is_done);
+  for (const LiveView& view : state.views)
+    expect_same(*view.image, session.render(command, hooks, {}).image);
+  settings.parameters = {{lamp, find("_3.radiance")->value}};  // as it was
+  live.change(settings);
+  EXPECT_TRUE(live.state().settings.parameters.empty());
+  expect_same(*wait_until(live, is_done).views.front().image, rendered({}));
+}
+
+TEST(LiveRender, RefusesParametersAndChangesNothing) {
+  LiveRender live(settings_of(), {});
+  const LiveState before = live.state();
+  const auto refused = [&](const std::string& name, std::vector<float> values) {
+    LiveSettings settings = before.settings;
+    settings.orbit.yaw = 10;
+    settings.parameters[name] = std::move(values);
+    try {
+      live.change(settings);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refused("materials.nothing.albedo", {1}),
+            "\"materials.nothing.albedo\": no such parameter of a material or light");
+  EXPECT_NE(refused("camera.fov", {40}), "") << "the orbit is the camera's";
+  const std::string& name = live.parameters().front().parameter.name;
+  EXPECT_EQ(refused(name, {1}), "\"" + name + "\": expected 3 numbers");
+  const LiveParameter& lamp = *std::ranges::find_if(
+      live.parameters(), [](const auto& one) { return one.parameter.name.ends_with("radiance"); });
+  EXPECT_NE(refused(lamp.parameter.name, {1, -1, 1}).find("0 or more"), std::string::npos);
+  EXPECT_EQ(live.state().version, before.version);
+  EXPECT_EQ(live.state().settings, before.settings);
+}
+
+// Half the error for four times the samples, and as the program estimates it.
+TEST(LiveRender, EstimatesItsError) {
+  WatchedRender live(settings_of({{"spp", "64"}}), {});
+  EXPECT_FALSE(live.state().views.front().relative_error);
+  live.set_watched(true);
+  const double error = wait_until(live, is_done).views.front().relative_error.value_or(0);
+  const RenderCommand command =
+      make_render_command(settings_of({{"spp", "64"}, {"target-error", "1e-6"}}));
+  RenderSession session(command, {});
+  MeasureHooks hooks;
+  hooks.stop = [] { return false; };
+  const RenderResult result = session.render(command, hooks, {});
+  // That one is of the last of the numbers at which it is asked, below 64.
+  EXPECT_NEAR(error, result.report.runs.back().relative_error.value_or(0), 0.15 * error);
+  live.change_samples(256);
+  EXPECT_NEAR(wait_until(live, is_done).views.front().relative_error.value_or(0), error / 2,
+              0.15 * error);
+}
+
+TEST(LiveRender, AddsUpTheStagesOfAllPasses) {
+  WatchedRender live(settings_of({{"mode", "wavefront"}, {"spp", "40"}}), {});
+  live.set_watched(true);
+  const LiveView view = wait_until(live, is_done).views.front();
+  double sum = 0;
+  for (const StageTime& stage : view.stages) sum += stage.time_ms;
+  EXPECT_GT(view.kernel_ms, view.pass_ms) << "more than the last pass";
+  EXPECT_LE(sum, view.kernel_ms * 1.01);
+  EXPECT_GT(sum, view.kernel_ms * 0.1);
+  EXPECT_LE(view.kernel_ms, view.wall_ms * 1.01);
+  EXPECT_GT(view.stages.size(), 2u);
+  EXPECT_EQ(view.decision.value, "wavefront");
+  live.change({{Mode::wavefront}, {3, 0, 1}});
+  EXPECT_TRUE(live.state().views.front().samples > 0 || live.state().views.front().wall_ms == 0);
+}
+
+TEST(LiveRender, SaysWhichModeAutoIs) {
+  WatchedRender live(settings_of({{"mode", "auto"}}), {});
+  live.set_watched(true);
+  const Decision decision = wait_until(live, is_done).views.front().decision;
+  RenderSession session(make_render_command(settings_of()), {});
+  const std::vector<Decision> plan = session.plan(make_render_command(settings_of()));
+  EXPECT_NE(std::ranges::find(plan, decision), plan.end());
+  EXPECT_EQ(decision.option, "mode");
+  EXPECT_NE(decision.value, "auto");
+  EXPECT_FALSE(decision.reason.empty());
+}
+
+TEST(LiveRender, ComparesTwoModesOverRounds) {
+  WatchedRender live(settings_of({{"spp", "400"}}), {});
+  live.change({{Mode::serial, Mode::wavefront}, {}});
+  live.set_watched(true);
+  const LiveState state = wait_until(live, is_done);
+  ASSERT_TRUE(state.ratio);
+  EXPECT_GE(state.ratio->rounds, rounds_min);
+  EXPECT_LE(state.ratio->low, state.ratio->value);
+  EXPECT_GE(state.ratio->high, state.ratio->value);
+  const double of_all = state.views[0].kernel_ms / state.views[1].kernel_ms;
+  EXPECT_NEAR(state.ratio->value, of_all, 0.3 * of_all) << "the first round apart";
+  live.change({{Mode::serial}, {}});
+  EXPECT_FALSE(live.state().ratio);
+}
+
+TEST(TimeRatio, IsOfTheSumsAndItsIntervalOfTheRounds) {
+  const std::vector<Round> equal(6, Round{3, 2});
+  EXPECT_FALSE(time_ratio(std::span(equal).first(rounds_min - 1)));
+  const TimeRatio exact = time_ratio(equal).value();
+  EXPECT_EQ(exact.rounds, 6u);
+  EXPECT_DOUBLE_EQ(exact.value, 1.5);
+  EXPECT_DOUBLE_EQ(exact.low, 1.5);
+  EXPECT_DOUBLE_EQ(exact.high, 1.5);
+  std::vector<Round> rounds;
+  for (int i = 0; i < 100; ++i) rounds.push_back({i % 2 == 0 ? 1.0 : 3.0, 1});
+  const TimeRatio ratio = time_ratio(rounds).value();
+  EXPECT_DOUBLE_EQ(ratio.value, 2);
+  // The mean of 100 numbers whose deviation is 1: two standard errors are 0.2.
+  EXPECT_NEAR(ratio.low, 1.8, 0.05);
+  EXPECT_NEAR(ratio.high, 2.2, 0.05);
+}
+
+TEST(WidthWithoutBars, IsThatOfASceneWithNothingBehind) {
+  SceneData box;  // seen from 4 before its front: it reaches a tangent of 1 / 4
+  box.add_quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, box.add_material(MaterialDescription()));
+  CameraParameters camera;
+  camera.look_from = {0, 0, 4};
+  camera.fov_degrees = 2 * std::atan(0.25f) * 180 / pi;  // all of its height
+  EXPECT_EQ(width_without_bars(box, camera, {600, 300}), 300);
+  EXPECT_EQ(width_without_bars(box, camera, {250, 300}), 250);
+  box.add_quad({-1.5f, -1, 0}, {3, 0, 0}, {0, 2, 0}, 0);
+  EXPECT_NEAR(width_without_bars(box, camera, {600, 300}), 450, 1);
+  box.add_quad({-3, -1, 0}, {6, 0, 0}, {0, 2, 0}, 0);
+  EXPECT_EQ(width_without_bars(box, camera, {600, 300}), 600);
+  SceneData sky = box;
+  sky.quads.resize(1), sky.sky.zenith = Color(1);
+  EXPECT_EQ(width_without_bars(sky, camera, {600, 300}), 600) << "it is bright there";
+  box.quads.resize(1);
+  EXPECT_EQ(width_without_bars(box, camera, {600, 300}), 300);
+  box.add_quad({-1, -1, 5}, {2, 0, 0}, {0, 2, 0}, 0);
+  EXPECT_EQ(width_without_bars(box, camera, {600, 300}), 600) << "the camera is in it";
+}
+
+TEST(WidthWithoutBars, IsOnlyForScenesAndUsersThatSetNone) {
+  const auto width = [](const Words& words) {
+    std::vector<Setting> settings;
+    for (const auto& [name, value] : words) settings.push_back({&find_option(name), value});
+    return LiveRender(settings, {}).state().settings.size.width;
+  };
+  const Words plain{{"scene", "cornell"}, {"output", "page.png"}, {"device", "cpu"}};
+  EXPECT_EQ(width(plain), 300);
+  EXPECT_EQ(width({{"scene", "spheres"}, {"output", "page.png"}, {"device", "cpu"}}), 600);
+  Words given = plain;
+  given.push_back({"height", "300"});
+  EXPECT_EQ(width(given), 600);
 }
 
 }  // namespace

@@ -3,7 +3,11 @@
 
 #include <cstring>
 #include <glm/gtc/quaternion.hpp>
+#include <sstream>
 
+#include "app/options/command_line.h"
+#include "common/scene/prepare/prepare_steps.h"
+#include "load/mitsuba_scene.h"
 #include "view/change_settings.h"
 
 namespace {
@@ -75,11 +79,73 @@ TEST(Orbit, StaysAwayFromThePoles) {
 
 TEST(Orbit, TheFocusAndAnOrthographicViewFollowTheDistance) {
   CameraParameters camera = skewed();
-  camera.focus_distance = 3, camera.orthographic_size = {4, 2};
+  camera.focus_distance = 3, camera.aperture = 0.1f, camera.orthographic_size = {4, 2};
   const CameraParameters moved = orbit_camera(camera, {10, 0, 0.5});
   EXPECT_FLOAT_EQ(moved.focus_distance, 1.5f);
   EXPECT_FLOAT_EQ(moved.orthographic_size.x, 2.0f);
   EXPECT_FLOAT_EQ(moved.orthographic_size.y, 1.0f);
+}
+
+/// A lens, and a pinhole camera, that have moved.
+std::vector<CameraParameters> moved_cameras() {
+  CameraParameters lens = skewed(), pinhole = skewed();
+  lens.aperture = 0.25f, lens.focus_distance = 3.3f, lens.fov_degrees = 33;
+  pinhole.fov_degrees = 71.5f;
+  const Orbit orbit{33, -7, 1.3};
+  return {lens, orbit_camera(lens, orbit), orbit_camera(pinhole, orbit)};
+}
+
+/// Bits of the rays through the image's corners.
+std::vector<Ray> corner_rays(const CameraParameters& parameters) {
+  const Camera camera = make_camera(parameters, 64, 48);
+  std::vector<Ray> rays;
+  for (const float x : {0.0f, 64.0f})
+    for (const float y : {0.0f, 48.0f}) rays.push_back(camera_ray(camera, x, y, 0.3f, 0.8f));
+  return rays;
+}
+
+TEST(CameraText, TheOptionsGiveTheSameBits) {
+  for (const CameraParameters& camera : moved_cameras()) {
+    std::vector<std::string> words{"--scene", "cornell"};
+    std::istringstream text(camera_options(camera));
+    for (std::string word; text >> word;) words.push_back(word);
+    const auto command = std::get<RenderCommand>(parse_command_line(words));
+    CameraParameters given;  // another scene's
+    given.fov_axis = FovAxis::diagonal;
+    override_camera(given, command.options.camera);
+    const std::vector<Ray> expected = corner_rays(camera), found = corner_rays(given);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_EQ(expected[i].origin, found[i].origin);
+      EXPECT_EQ(expected[i].direction, found[i].direction);
+    }
+  }
+}
+
+void expect_same_view(const CameraParameters& camera) {
+  SCOPED_TRACE(camera_xml(camera, {640, 480}));
+  const SceneData scene =
+      load_xml(camera_xml(camera, {640, 480}) + "<shape type='sphere'/><emitter type='constant'/>")
+          .scene;
+  EXPECT_EQ(scene.defaults.width, 640);
+  EXPECT_EQ(scene.defaults.height, 480);
+  const std::vector<Ray> expected = corner_rays(camera), found = corner_rays(scene.camera);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(expected[i].origin[c], found[i].origin[c], 2e-4);
+      EXPECT_NEAR(expected[i].direction[c], found[i].direction[c], 1e-5);
+    }
+  }
+}
+
+TEST(CameraText, TheSceneLinesSeeTheSame) {
+  for (const CameraParameters& camera : moved_cameras()) expect_same_view(camera);
+  CameraParameters camera = skewed();
+  camera.mirrored = true, camera.principal_point = {0.1f, -0.2f};
+  expect_same_view(camera);
+  camera.fov_axis = FovAxis::horizontal;
+  expect_same_view(camera);
+  camera.principal_point = {0, 0}, camera.orthographic = true, camera.orthographic_size = {3, 3};
+  expect_same_view(camera);
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 """`ptexp view` as a browser and its enemies use it: by HTTP, and in headless Chromium.
 
 The environment variable PTEXP names the executable (build/release/src/ptexp). With
-PTEXP_NEEDS_CHROMIUM=1 a missing Chromium is an error and not a skip.
+PTEXP_NEEDS_CHROMIUM=1 a missing Chromium is an error and not a skip. PTEXP_SCREENSHOTS names a folder
+for pictures of the page.
 """
+import base64
 import contextlib
 import fcntl
 import http.client
@@ -232,7 +234,93 @@ class Render(Program):
         self.assertEqual(self.image("megakernel"), self.image("wavefront"))
         self.change(mode="serial")
         self.assertEqual([view["mode"] for view in self.when_done()["views"]], ["serial"])
-        self.assertEqual(self.ask("image?mode=megakernel")[0], 404)
+        self.assertEqual(self.ask("image?mode=megakernel")[0], 204)
+
+    def save(self, form, folder, mode="auto"):
+        status, headers, body = self.ask(f"save?mode={mode}&form={form}")
+        self.assertEqual(status, 200)
+        self.assertEqual(headers["Content-Disposition"],
+                         f'attachment; filename="cornell.{form}"')
+        file = Path(folder) / f"saved.{form}"
+        file.write_bytes(body)
+        return file
+
+    def ptexp(self, *arguments):
+        return subprocess.run([PTEXP, *arguments], capture_output=True, text=True, check=False,
+                              timeout=TIMEOUT_S)
+
+    def test_saved_files_are_those_of_the_program(self):
+        """verify renders them again by their headers."""
+        self.start("--max-depth", "3", spp="6")
+        with tempfile.TemporaryDirectory() as folder:
+            self.change(exposure=1)
+            self.when_done()
+            self.assertEqual(read_png(self.save("png", folder).read_bytes()),
+                             self.rendered("--spp", "6", "--max-depth", "3", "--exposure", "1"))
+            for orbit in ({}, {"yaw": 25, "pitch": 10, "zoom": 1.2}):
+                self.change(orbit=orbit, mode="wavefront", layer="depth")
+                self.when_done()
+                file = self.save("exr", folder, "wavefront")
+                run = self.ptexp("verify", file, "--share", "1")
+                self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+                self.assertIn(b"depth.Z", file.read_bytes()[:4096])
+            name = json.loads(self.ask("parameters")[2])[0]["name"]
+            self.change(parameters={name: [0.1, 0.1, 0.9]})
+            self.when_done()
+            file = self.save("exr", folder, "wavefront")
+            self.assertIn(f"{name}=0.1,0.1,0.9".encode(), file.read_bytes()[:4096])
+            self.assertEqual(self.ptexp("verify", file).returncode, 2, "no options give that")
+
+    def test_the_camera_as_options_and_as_lines_of_a_scene(self):
+        self.start("--filter", "box", spp="4")
+        self.change(orbit={"yaw": 25, "pitch": 10, "zoom": 1.2})
+        camera = self.when_done()["camera"]
+        moved = self.image()
+        self.assertEqual(self.rendered("--spp", "4", *camera["options"].split()), moved)
+        self.assertIn('<lookat origin="', camera["xml"])
+        self.assertIn('<integer name="width" value="64"/>', camera["xml"])
+
+    def test_layers_are_those_of_the_program(self):
+        self.start(spp="4")
+        self.change(layer="rays")
+        self.when_done()
+        status, headers, body = self.ask("image?mode=auto")
+        low, high = map(float, headers["X-Range"].split())
+        self.assertTrue(1 <= low < high, headers["X-Range"])
+        self.assertEqual(status, 200)
+        heat = read_png(body)
+        self.change(exposure=3, curve="agx")
+        self.assertEqual(self.image(), heat, "colours of numbers stay")
+        self.change(layer="normal")
+        self.state_when(lambda state: state["status"] == "done" and
+                        self.ask("image?mode=auto")[0] == 200, "the normals")
+        self.assertIsNone(self.ask("image?mode=auto")[1]["X-Range"])
+        width, height, pixels = self.image()
+        floor = (height - 3) * width + width // 2
+        self.assertEqual(pixels[3 * floor:3 * floor + 3], bytes([128, 255, 128]), "up: +y")
+        self.change(layer="color", exposure=0, curve="srgb")
+        self.when_done()
+        self.assertEqual(self.image(), self.rendered("--spp", "4"))
+
+    def test_a_pause_lasts_until_it_goes_on(self):
+        self.start()
+        self.state_when(lambda state: state["views"][0]["samples"] > 2, "samples")
+        self.change(paused=True)
+        self.assertEqual(self.state()["status"], "paused")
+        samples = self.state()["views"][0]["samples"]
+        time.sleep(0.5)
+        self.assertLessEqual(self.state()["views"][0]["samples"] - samples, 0)
+        self.change(paused=False)
+        self.state_when(lambda state: state["views"][0]["samples"] > samples, "more samples")
+
+    def test_size_and_samples(self):
+        self.start(spp="2")
+        self.change(size=[40, 30], scale=2, spp=5)
+        state = self.when_done()
+        self.assertEqual((state["size"], state["scale"], state["spp"]), ([40, 30], 2, 5))
+        width, height, pixels = self.image()
+        expected = self.rendered("--width", "80", "--height", "60", "--spp", "5")
+        self.assertEqual((width, height, pixels), expected)
 
     def test_news_come_at_once_and_none_soon(self):
         self.start(spp="2")
@@ -246,7 +334,7 @@ class Render(Program):
         self.start()
         self.assert_idle()
         self.assertEqual(json.loads(self.ask("state")[2])["status"], "idle")  # no viewer asks
-        self.assertEqual(self.ask("image?mode=auto")[0], 404)
+        self.assertEqual(self.ask("image?mode=auto")[0], 204)
         self.state("a")
         self.state("b")
         self.assert_works()
@@ -267,6 +355,7 @@ class Refusals(Program):
         other = ("0" if self.token[0] != "0" else "1") + self.token[1:]
         for path in ("/", "/state", f"/{other}/", f"/{other}/state", f"/{self.token}",
                      f"/{self.token[:-1]}/", f"/{self.token}0/", f"/{self.token}/state/",
+                     f"/{other}/save?mode=auto&form=exr", f"/{other}/parameters", "/parameters",
                      f"//{self.token}/", f"/{self.token}//state", "/favicon.ico",
                      f"/{self.token}/../../etc/passwd", f"/{self.token}/..%2f..%2fetc/passwd",
                      f"/{self.token}/%2e%2e/%2e%2e/etc/passwd", f"/{self.token}/./state",
@@ -279,9 +368,9 @@ class Refusals(Program):
     def test_other_methods(self):
         self.start()
         for method in ("PUT", "DELETE", "PATCH", "OPTIONS", "HEAD"):
-            for name in ("", "state", "image", "settings"):
+            for name in ("", "state", "image", "save", "parameters", "settings"):
                 self.assertEqual(self.ask(name, method)[0], 404, f"{method} {name}")
-        for name in ("", "state", "image"):
+        for name in ("", "state", "image", "save", "parameters"):
             self.assertEqual(self.ask(name, "POST", "{}")[0], 404, name)
         self.assertEqual(self.ask("settings")[0], 404)
 
@@ -356,6 +445,10 @@ class Refusals(Program):
                             ('{"exposure": "bright"}', '"exposure": expected a number from'),
                             ('{"mode": "fast"}', '"mode": expected one of auto'),
                             ('{"orbit": {"zoom": -1}}', '"zoom": expected a number'),
+                            ('{"size": [100000, 1]}', '"size": expected a whole number'),
+                            ('{"scale": 100}', '"scale": expected a number from 0.0625 to 4'),
+                            ('{"layer": "../x"}', '"layer": expected one of color'),
+                            ('{"parameters": {"camera.fov": 1}}', "no such parameter"),
                             ('{"scene": "/etc/passwd"}', '"scene": no such key')):
             status, _, answer = self.ask("settings", "POST", body)
             self.assertEqual(status, 400, body)
@@ -363,6 +456,7 @@ class Refusals(Program):
         for query in ("after=x", "after=-1", "viewer=" + "v" * 65):
             self.assertEqual(self.ask(f"state?{query}")[0], 400, query)
         self.assertEqual(self.ask("image?mode=../wavefront")[0], 404)
+        self.assertEqual(self.ask("save?mode=../wavefront&form=exr")[0], 404)
 
     def test_only_this_machine_hears_it(self):
         self.start()
@@ -613,6 +707,7 @@ class Tab:
                                     flatten=True)["sessionId"]
         for domain in ("Runtime", "Log", "Page"):
             self.call(f"{domain}.enable")
+        self.call("Emulation.setFocusEmulationEnabled", enabled=True)  # of all tabs at once
         self.call("Page.navigate", url=url)
 
     def call(self, method, **params):
@@ -635,8 +730,44 @@ class Tab:
             self.mouse("mouseMoved", *(a + (b - a) * i / steps for a, b in zip(begin, end)), **left)
         self.mouse("mouseReleased", *end, button="left", clickCount=1)
 
+    def set_width(self, width, height=900):
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height,
+                  deviceScaleFactor=1, mobile=width < 500)
+
+    def picture(self, name):
+        """Kept where PTEXP_SCREENSHOTS says so."""
+        folder = os.environ.get("PTEXP_SCREENSHOTS")
+        if not folder:
+            return
+        shot = self.call("Page.captureScreenshot", captureBeyondViewport=True)["data"]
+        Path(folder, f"{name}.png").write_bytes(base64.b64decode(shot))
+
+    def click(self, element):
+        """As a user does it, who first scrolls there."""
+        self.value(f'document.querySelector("{element}").scrollIntoView({{block: "center"}})')
+        x, y = self.middle(element)
+        for kind in ("mousePressed", "mouseReleased"):
+            self.mouse(kind, x, y, button="left", clickCount=1)
+
+    def choose(self, element, value):
+        self.value(f'(() => {{ const e = document.querySelector("{element}"); e.value = "{value}"; '
+                   'e.dispatchEvent(new Event("input")); e.dispatchEvent(new Event("change")); })()')
+
+    def key(self, key):
+        for kind in ("keyDown", "keyUp"):
+            self.call("Input.dispatchKeyEvent", type=kind, key=key,
+                      text=key if len(key) == 1 else "")
+
+    def text(self, element):
+        return self.value(f'document.querySelector("{element}").innerText') or ""
+
     def close(self):
         self.browser.call("Target.closeTarget", targetId=self.target)
+
+    def middle(self, element="canvas"):
+        return self.value(f'(() => {{ const b = document.querySelector("{element}")'
+                          '.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2];'
+                          '})()')
 
     def samples(self):
         """The samples of each mode, as the page shows them."""
@@ -649,11 +780,6 @@ class Tab:
                            'c.height, [...c.getContext("2d").getImageData(0, 0, c.width, c.height)'
                            '.data].filter((_, i) => i % 4 < 3)]; })()')
         return found[0], found[1], bytes(found[2])
-
-    def middle(self, element="canvas"):
-        return self.value(f'(() => {{ const b = document.querySelector("{element}")'
-                          '.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2];'
-                          '})()')
 
 
 class InBrowser(Program):
@@ -724,8 +850,7 @@ class InBrowser(Program):
         tab = self.open()
         wait_for(lambda: tab.samples() == [4], "the image")
         self.assertTrue(tab.value('document.querySelector("#divider").hidden'))
-        tab.value('(() => { const m = document.querySelector("#mode"); m.value = "split"; '
-                  'm.dispatchEvent(new Event("change")); })()')
+        tab.choose("#mode", "split")
         wait_for(lambda: tab.samples() == [4, 4], "both modes")
         wait_for(lambda: not tab.value('document.querySelector("#divider").hidden'), "the divider")
         expected = self.rendered("--spp", "4")
@@ -743,8 +868,7 @@ class InBrowser(Program):
         first, second = self.open(), self.open()
         for tab in (first, second):
             wait_for(lambda tab=tab: max(tab.samples(), default=0) > 4, "samples")
-        first.value('(() => { const e = document.querySelector("#exposure"); e.value = 2; '
-                    'e.dispatchEvent(new Event("input")); })()')
+        first.choose("#exposure", 2)
         wait_for(lambda: second.value('document.querySelector("#exposure").value') == "2",
                  "the other one's exposure")
         first.close()
@@ -756,6 +880,132 @@ class InBrowser(Program):
         self.assertEqual(self.peek()["status"], "idle")
         third = self.open()
         wait_for(lambda: max(third.samples(), default=0) > samples, "the render to go on")
+        self.assert_no_problems()
+
+    def test_keys_pause_show_layers_and_help(self):
+        self.start()
+        tab = self.open()
+        wait_for(lambda: max(tab.samples(), default=0) > 0, "samples")
+        tab.key(" ")
+        wait_for(lambda: self.peek()["paused"], "the pause")
+        wait_for(lambda: tab.text("#pause") == "go on" and "paused" in tab.text("#status"),
+                 "the pause on the page")
+        tab.click("#pause")
+        wait_for(lambda: not self.peek()["paused"], "its end")
+        tab.key("l")
+        wait_for(lambda: self.peek()["layer"] == "albedo", "the next layer")
+        for key, value in (("[", -0.5), ("]", 0)):
+            tab.key(key)
+            wait_for(lambda value=value: self.peek()["exposure"] == value, "the exposure")
+        tab.key("t")
+        wait_for(lambda: self.peek()["curve"] == "neutral", "the next curve")
+        tab.key("ArrowLeft")
+        wait_for(lambda: self.peek()["orbit"]["yaw"] == -5, "the camera")
+        tab.key("r")
+        wait_for(lambda: self.peek()["orbit"]["yaw"] == 0, "the camera at rest")
+        tab.choose("#layer", "rays")
+        wait_for(lambda: "rays per sample" in tab.text("#legend"), "the scale of the heat map")
+        tab.set_width(1280)
+        tab.picture("rays-1280")
+        tab.key("?")
+        self.assertTrue(tab.value('document.querySelector("#help").open'))
+        tab.picture("help-1280")
+        self.assert_no_problems()
+
+    def test_what_is_copied_and_saved(self):
+        self.start(spp="4")
+        tab = self.open()
+        wait_for(lambda: tab.samples() == [4], "the image")
+        self.browser.call("Browser.grantPermissions",
+                          permissions=["clipboardReadWrite", "clipboardSanitizedWrite"])
+        for button, form in (("#copy_options", "options"), ("#copy_xml", "xml")):
+            tab.click(button)
+            expected = self.peek()["camera"][form]
+            wait_for(lambda: "copied" in tab.text("#copy_note"), "the note", 20)
+            self.assertEqual(tab.value('document.querySelector("#copied").textContent'), expected)
+            self.assertEqual(tab.value("navigator.clipboard.readText()"), expected)
+        with tempfile.TemporaryDirectory() as folder:
+            self.browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=folder)
+            for button, name in (("#png", "cornell.png"), ("#exr", "cornell.exr")):
+                tab.click(button)
+                wait_for((Path(folder) / name).exists, name)
+            self.assertEqual(read_png((Path(folder) / "cornell.png").read_bytes()), self.image())
+            self.assertEqual((Path(folder) / "cornell.exr").read_bytes()[:4], b"\x76\x2f\x31\x01")
+        self.assert_no_problems()
+
+    def test_parameters_in_their_panel(self):
+        self.start(spp="4")
+        tab = self.open()
+        wait_for(lambda: tab.samples() == [4], "the image")
+        rest = tab.pixels()
+        tab.click("#parameters summary")
+        rows = wait_for(lambda: tab.value('document.querySelectorAll("#list .row").length'),
+                        "the parameters")
+        names = [one["name"] for one in json.loads(self.ask("parameters")[2])]
+        self.assertEqual(rows, len(names))
+        tab.choose("#list input[type=number]", 0.125)
+        wait_for(lambda: self.peek()["parameters"].get(names[0], [0])[0] == 0.125, "the edit")
+        wait_for(lambda: self.peek()["status"] == "done" and tab.pixels() == self.image() != rest,
+                 "another image")
+        wait_for(lambda: tab.value('document.querySelectorAll("#list .edited").length') == 1,
+                 "what is edited")
+        tab.choose("#list input[type=color]", "#ff0000")
+        wait_for(lambda: self.peek()["parameters"].get(names[0]) == [1, 0, 0], "red")
+        tab.set_width(1280, 1100)
+        tab.picture("parameters-1280")
+        tab.choose("#filter", "sky")
+        shown = 'document.querySelectorAll("#list section:not([hidden])").length'
+        self.assertEqual(tab.value(shown), 1)
+        tab.click("#as_loaded")
+        wait_for(lambda: self.peek()["parameters"] == {}, "the reset")
+        wait_for(lambda: tab.pixels() == rest, "the first image")
+        self.assert_no_problems()
+
+    def test_figures_of_the_divided_view(self):
+        self.start("--width", "160", "--height", "120")
+        tab = self.open()
+        wait_for(lambda: max(tab.samples(), default=0) > 0, "samples")
+        tab.choose("#mode", "split")
+        wait_for(lambda: (self.peek()["ratio"] or {}).get("rounds", 0) > 5, "the ratio")
+        wait_for(lambda: "95 %" in tab.text("#ratio"), "the ratio on the page")
+        ratio = float(re.search(r"takes ([0-9.]+) times", tab.text("#ratio"))[1])
+        self.assertLess(abs(ratio - self.peek()["ratio"]["value"]), 0.2 * ratio)
+        for word in ("wavefront: ", "megakernel: ", "ms per sample", "shade_surface"):
+            self.assertIn(word, tab.text("#stages"))
+        self.assertEqual(tab.value('document.querySelectorAll("#stages .bar").length'), 2)
+        widths = tab.value('[...document.querySelectorAll("#stages .bar")]'
+                           '.map((bar) => parseFloat(bar.style.width))')
+        self.assertEqual(max(widths), 100)
+        tab.choose("#target", 0.001)
+        tab.choose("#target", 0.002)
+        self.assertRegex(tab.text("#needs"), r"needs about \d+ samples: [0-9.]+ (s|min|h) more")
+        tab.set_width(1280)
+        tab.picture("split-1280")
+        tab.choose("#mode", "auto")
+        wait_for(lambda: tab.text("#why").startswith("wavefront: the CPU"), "why that mode")
+        tab.picture("auto-1280")
+        self.assert_no_problems()
+
+    def test_a_telephone(self):
+        """Nothing is wider than the screen, and controls are as large as a finger."""
+        self.start("--width", "600", "--height", "300", spp="8", scene="cornell")
+        tab = self.open()
+        tab.set_width(390, 844)
+        wait_for(lambda: tab.samples() == [8], "the image")
+        tab.click("#parameters summary")
+        wait_for(lambda: tab.value('document.querySelectorAll("#list .row").length'), "parameters")
+        tab.click("#copy_xml")
+        tab.choose("#mode", "split")
+        wait_for(lambda: tab.samples() == [8, 8], "both modes")
+        self.assertLessEqual(tab.value("document.scrollingElement.scrollWidth"), 390)
+        inside = ('[...document.querySelectorAll("main *")].filter((e) => e.getClientRects().length '
+                  '&& e.getBoundingClientRect().right > 391).map((e) => e.id || e.tagName)')
+        self.assertEqual(tab.value(inside), [])
+        small = ('[...document.querySelectorAll("button, select, .button")].filter((e) => '
+                 'e.getClientRects().length && e.getBoundingClientRect().height < 32)'
+                 '.map((e) => e.id)')
+        self.assertEqual(tab.value(small), [])
+        tab.picture("telephone-390")
         self.assert_no_problems()
 
     def test_the_page_says_when_the_program_has_ended(self):

@@ -60,6 +60,10 @@ TEST(ViewSite, TellsTheStateAsItIs) {
   EXPECT_EQ(state["error"], "");
   EXPECT_EQ(state["mode"], "split");
   EXPECT_EQ(state["exposure"], -2.5);
+  EXPECT_EQ(state["size"], (nlohmann::json{16, 12}));
+  EXPECT_EQ(state["layer"], "color");
+  EXPECT_EQ(state["paused"], false);
+  EXPECT_TRUE(state["ratio"].is_null());
   EXPECT_EQ(state["orbit"], (nlohmann::json{{"yaw", 10}, {"pitch", -5}, {"zoom", 1.5}}));
   const PitchRange range = pitch_range(page.live.camera());
   EXPECT_EQ(state["pitch_range"], (nlohmann::json{range.least, range.most}));
@@ -70,7 +74,8 @@ TEST(ViewSite, TellsTheStateAsItIs) {
   EXPECT_EQ(state["views"][0]["samples"], 0);
   EXPECT_EQ(state["views"][0]["image"], 0);
   EXPECT_EQ(state["version"], page.live.state().version);
-  EXPECT_EQ(page.get("image", {{"mode", "wavefront"}}).status, 404);
+  EXPECT_EQ(page.get("image", {{"mode", "wavefront"}}).status, 204);
+  EXPECT_EQ(page.get("image", {{"mode", "quick"}}).status, 404);
 }
 
 // One pass of several: each number is that of the view.
@@ -97,8 +102,44 @@ TEST(ViewSite, TellsWhatItsPassesTook) {
   EXPECT_EQ(page.get("image", {{"mode", mode}}).body, first);
   page.post("settings", R"({"exposure": 3})");
   EXPECT_NE(page.get("image", {{"mode", mode}}).body, first);
-  page.post("settings", nlohmann::json{{"exposure", now.exposure}}.dump());
+  page.post("settings", nlohmann::json{{"exposure", now.display.exposure}}.dump());
   EXPECT_EQ(page.get("image", {{"mode", mode}}).body, first);
+}
+
+TEST(ViewSite, TakesWhatItTells) {
+  Page page;
+  const std::string name = page.live.parameters().front().parameter.name;
+  const nlohmann::json change = {
+      {"size", {20, 10}}, {"scale", 0.5},     {"spp", 3},
+      {"layer", "depth"}, {"exposure", 1.5},  {"curve", "neutral"},
+      {"paused", true},   {"mode", "serial"}, {"parameters", {{name, {0.25, 0.5, 1.0}}}}};
+  ASSERT_EQ(page.post("settings", change.dump()).status, 204);
+  const nlohmann::json state = page.state();
+  for (const auto& [key, value] : change.items()) EXPECT_EQ(state[key], value) << key;
+  EXPECT_EQ(state["status"], "paused");
+  ASSERT_EQ(page.post("settings", R"({"parameters": null, "paused": false})").status, 204);
+  EXPECT_TRUE(page.state()["parameters"].empty());
+  EXPECT_EQ(page.state()["status"], "idle");
+  EXPECT_EQ(page.post("settings", R"({"parameters": {"materials.x": 1}, "spp": 9})").status, 400);
+  EXPECT_EQ(page.state()["spp"], 3) << "all or nothing";
+  const auto list = nlohmann::json::parse(page.get("parameters").body);
+  ASSERT_EQ(list.size(), page.live.parameters().size());
+  EXPECT_EQ(list.front()["name"], name);
+  EXPECT_EQ(list.front()["value"], nlohmann::json(page.live.parameters().front().value));
+}
+
+TEST(ViewSite, SavesNothingBeforeThereIsAnImage) {
+  Page page;
+  EXPECT_EQ(page.get("save", {{"mode", "auto"}, {"form", "png"}}).status, 404);
+  page.live.set_watched(true);
+  LiveState now = page.live.state();
+  for (int i = 0; i < 600 && now.status != LiveStatus::done; ++i)
+    now = page.live.wait(now.version, 0.2);
+  EXPECT_EQ(page.get("save", {{"mode", "auto"}, {"form", "jpg"}}).status, 400);
+  EXPECT_EQ(page.get("save", {{"mode", "serial"}, {"form", "png"}}).status, 404);
+  const HttpReply saved = page.get("save", {{"mode", "auto"}, {"form", "exr"}});
+  EXPECT_EQ(saved.status, 200);
+  EXPECT_EQ(saved.headers.at("Content-Disposition"), "attachment; filename=\"cornell.exr\"");
 }
 
 // A browser leaves out port 80, and no other.
