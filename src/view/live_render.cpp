@@ -202,7 +202,7 @@ LiveRender::LiveRender(std::vector<Setting> settings, const Warn& warn)
   if (!has_size) size_.width = width_without_bars(scene, camera_, size_);
   tried_ = materials_and_lights(scene);
   for (const SceneParameter& parameter : scene_parameters(tried_))
-    if (!parameter.is_of_camera) parameters_.push_back({parameter, parameter.get(tried_)});
+    if (parameter.changes.shading) parameters_.push_back({parameter, parameter.get(tried_)});
 
   state_.settings.modes = {asked.options.mode};
   state_.settings.size = size_;
@@ -455,13 +455,13 @@ void LiveRender::arrange_workers(const Task& task) {
 void LiveRender::edit_scenes(const ParameterValues& values) {
   if (values == edited_) return;
   for (const Worker& worker : workers_) {
-    SceneData& scene = worker.session->change_scene();
     for (const LiveParameter& one : parameters_) {
-      const auto value = values.find(one.parameter.name);
-      if (value != values.end())
-        one.parameter.set(scene, value->second);
-      else if (edited_.contains(one.parameter.name))
-        one.parameter.set(scene, one.value);
+      const auto found = values.find(one.parameter.name);
+      const bool is_wanted = found != values.end();
+      if (!is_wanted && !edited_.contains(one.parameter.name)) continue;
+      const std::vector<float>& value = is_wanted ? found->second : one.value;
+      worker.session->change_scene(one.parameter.changes,
+                                   [&](SceneData& scene) { one.parameter.set(scene, value); });
     }
   }
   edited_ = values;

@@ -415,16 +415,19 @@ TEST(LiveRender, EditsMaterialsAndLights) {
   const LiveState edited = wait_until(live, is_done);
   const RenderCommand command = make_render_command(settings_of());
   RenderSession session(command, {});
-  SceneData& scene = session.change_scene();
-  scene.materials[0][&Diffuse::albedo].value = {0.1f, 0.2f, 0.9f};
-  scene.materials[3].emission.radiance = {3, 4, 5};
+  constexpr SceneChanges changes{.shading = true, .lights = true};
+  session.change_scene(changes, [](SceneData& scene) {
+    scene.materials[0][&Diffuse::albedo].value = {0.1f, 0.2f, 0.9f};
+    scene.materials[3].emission.radiance = {3, 4, 5};
+  });
   MeasureHooks hooks;
   hooks.stop = [] { return false; };
   expect_same(*edited.views.front().image, session.render(command, hooks, {}).image);
   settings.parameters.erase(albedo);  // one is reset; a mode joins
   settings.modes = {Mode::serial, Mode::wavefront};
   live.change(settings);
-  session.change_scene().materials[0][&Diffuse::albedo].value = Color(0.73f);
+  session.change_scene(
+      changes, [](SceneData& scene) { scene.materials[0][&Diffuse::albedo].value = Color(0.73f); });
   const LiveState state = wait_until(live, is_done);
   for (const LiveView& view : state.views)
     expect_same(*view.image, session.render(command, hooks, {}).image);
