@@ -79,7 +79,7 @@ class Scene:
 
     @property
     def params(self) -> Params:
-        """Camera, materials, lights and instances, to be changed between renders."""
+        """Camera, materials, lights, instances and vertices, to be changed between renders."""
         if self._params is None:
             self._params = Params(self._native)
         return self._params

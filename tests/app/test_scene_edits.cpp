@@ -9,6 +9,7 @@
 #include "app/options/check_options.h"
 #include "app/render/render_session.h"
 #include "common/accel/embree/embree_tree.h"
+#include "common/device/devices.h"
 #include "common/image/compare/compare.h"
 #include "common/scene/edit/scene_parameters.h"
 #include "load/mitsuba_scene.h"
@@ -21,7 +22,7 @@ using EditWords = std::vector<std::pair<std::string, std::string>>;
 
 RenderCommand edit_command(const EditWords& more, const std::string& scene = "memory") {
   EditWords words{
-      {"scene", scene}, {"width", "24"}, {"height", "18"}, {"spp", "2"}, {"device", "cpu"}};
+      {"scene", scene}, {"width", "24"}, {"height", "18"}, {"spp", "1"}, {"device", "cpu"}};
   words.insert(words.end(), more.begin(), more.end());
   std::vector<Setting> settings;
   for (const auto& [name, value] : words) settings.push_back({&find_option(name), value});
@@ -162,6 +163,28 @@ TEST(SceneEdits, EveryParameterWithEveryStructure) {
   }
 }
 
+TEST(CudaSceneEdits, EveryParameterInEachMode) {
+  if (list_devices().size() < 2) GTEST_SKIP() << "no CUDA device";
+  const SceneData scene = scene_of(std::string(room) + instances);
+  for (const EditWords& words : std::vector<EditWords>{{{"mode", "megakernel"}},
+                                                       {{"mode", "wavefront"}},
+                                                       {{"accel", "cwbvh"}, {"builder", "hploc"}},
+                                                       {{"light-selection", "tree"}}}) {
+    EditWords on_cuda = words;
+    on_cuda.emplace_back("device", "cuda");
+    SCOPED_TRACE(words.front().second);
+    EXPECT_GE(expect_edits_as_anew(scene, on_cuda), 20);
+  }
+  const RenderCommand command = edit_command({{"device", "cuda"}});
+  Editor editor(scene);
+  const RenderReport first = render_now(editor.session, command).report;
+  for (const char* name : {"materials.red.albedo", "lights.lamp.radiance", "lights.sky.zenith"}) {
+    editor.change(editor[name]);
+    EXPECT_EQ(expect_as_anew(editor.session, command).report.setup_ms, first.setup_ms)
+        << name << ": another renderer";
+  }
+}
+
 // Where other materials, spheres, media or lights make preparation another one.
 TEST(SceneEdits, EveryParameterOfOtherScenes) {
   const std::string sphere = R"(<shape type="sphere" id="ball"><bsdf type="dielectric"/>
@@ -202,6 +225,18 @@ TEST(SceneEdits, LightsGoOutAndOn) {
       SCOPED_TRACE(name);
       editor.set("lights." + name + ".radiance", std::vector<float>(3, value));
       expect_as_anew(editor.session, command);
+    }
+  }
+  {  // a tree that loses its last light
+    const RenderCommand command =
+        edit_command({{"mode", "wavefront"}, {"light-selection", "tree"}});
+    Editor editor(scene_of(std::string(room) + R"(<emitter type="directional" id="far"/>)"));
+    for (const float value : {0.0f, 2.0f}) {
+      for (const char* name : {"lamp.radiance", "neon.radiance", "bulb.intensity"}) {
+        SCOPED_TRACE(name);
+        editor.set(std::string("lights.") + name, std::vector<float>(3, value));
+        expect_as_anew(editor.session, command);
+      }
     }
   }
   Editor editor(scene_of(room));  // opacity 1 and less: with masks and without
