@@ -68,6 +68,15 @@ void add_stages(const std::vector<StageTime>& more, std::vector<StageTime>& stag
   }
 }
 
+/// A plan goes through the scene, so it is made only where it decides the mode.
+Decision mode_decision(RenderSession& session, const RenderCommand& command) {
+  const Mode mode = command.options.mode;
+  if (mode == Mode::automatic)
+    for (Decision& one : session.plan(command))
+      if (one.option == "mode") return std::move(one);
+  return {"mode", to_string(mode), ""};
+}
+
 /// What edits of materials and lights read and write, and no geometry.
 SceneData materials_and_lights(const SceneData& scene) {
   SceneData part;
@@ -211,7 +220,9 @@ LiveRender::LiveRender(std::vector<Setting> settings, const Warn& warn)
   state_.views.front().mode = asked.options.mode;
   aovs_ = usual_aovs;
   workers_.emplace_back().session = std::move(session);
-  arrange_workers({number_, state_.settings, aovs_, state_.spp});  // errors, before anybody looks
+  arrange_workers({number_, state_.settings, aovs_, state_.spp});
+  if (asked.options.mode != Mode::automatic)
+    workers_.front().session->plan(workers_.front().command);  // errors, before anybody looks
   thread_ = std::thread([this] { run(); });
 }
 
@@ -286,7 +297,7 @@ void LiveRender::change_display(const SettingsChange& change) {
              change.curve.value_or(before.curve)};
   if (display == before) return;
   const std::uint32_t bit = layer_bit(display.layer).value_or(0);
-  if ((aovs_ & bit) != bit) return begin_anew();
+  if ((aovs_ & bit) != bit || !state_.error.empty()) return begin_anew();
   ++state_.version;
   changed_.notify_all();
 }
@@ -442,11 +453,9 @@ void LiveRender::arrange_workers(const Task& task) {
     if (options.sampler == SamplerKind::stratified) options.spp = task.spp;
     worker.session->change_camera() = orbit_camera(camera_, task.settings.orbit);
     const Options& last = before.options;
-    const bool is_planned = !worker.decision.value.empty() && last.mode == options.mode &&
+    const bool is_planned = worker.decision.option == "mode" && last.mode == options.mode &&
                             last.width == options.width && last.height == options.height;
-    if (is_planned) continue;
-    for (const Decision& one : worker.session->plan(worker.command))
-      if (one.option == "mode") worker.decision = one;
+    if (!is_planned) worker.decision = mode_decision(*worker.session, worker.command);
   }
   arranged_ = task.number;
 }

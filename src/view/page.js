@@ -93,6 +93,7 @@ function duration(ms) {
   if (s < 6000) return `${Math.round(s / 60)} min`;
   return s < 360000 ? `${(s / 3600).toPrecision(2)} h` : `${Math.round(s / 86400)} days`;
 }
+const milliseconds = (ms) => `${ms < 100 ? ms.toPrecision(3) : Math.round(ms)} ms`;
 function element(name, text, kind) {
   const made = document.createElement(name);
   if (text !== undefined) made.textContent = text;
@@ -140,7 +141,8 @@ function show_ratio() {
 }
 
 const colors = ["#4e79a7", "#f28e2b", "#59a14f", "#e15759", "#76b7b2", "#edc948", "#b07aa1",
-                "#ff9da7", "#9c755f"], color_of = new Map([["between stages", "#8888"]]);
+                "#ff9da7", "#9c755f", "#d4a6c8", "#499894", "#d37295", "#bab0ac"];
+const color_of = new Map([["between stages", "#8888"]]);
 function stage_color(stage) {
   if (!color_of.has(stage)) color_of.set(stage, colors[color_of.size % colors.length]);
   return color_of.get(stage);
@@ -159,12 +161,12 @@ function show_stages() {
   $("stages").replaceChildren(...rows.flatMap(({mode, stages, ms}) => {
     const bar = element("div", undefined, "bar"), list = element("div", undefined, "stages");
     bar.style.width = `${100 * ms / longest}%`;
-    list.append(element("b", `${mode}: ${ms.toPrecision(3)} ms per sample`));
+    list.append(element("b", `${mode}: ${milliseconds(ms)} per sample`));
     for (const [name, stage_ms] of stages.filter(([, one]) => one > 0)) {
       const part = element("i"), swatch = element("i"), item = element("span");
       part.style.flexGrow = stage_ms;
       part.style.background = swatch.style.background = stage_color(name);
-      part.title = `${name}: ${stage_ms.toPrecision(3)} ms`;
+      part.title = `${name}: ${milliseconds(stage_ms)}`;
       item.append(swatch, `${name} ${Math.round(100 * stage_ms / ms)} %`);
       bar.append(part);
       list.append(item);
@@ -309,7 +311,7 @@ function parameter_row(parameter) {
     input.addEventListener("change", () => { if (input.value !== "") set(values()); });
   row.append(element("span", word));
   let swatch = null;
-  if (inputs.length === 3) {
+  if (inputs.length === 3 && word !== "eta" && word !== "k") {
     swatch = element("input");
     Object.assign(swatch, {type: "color", ariaLabel: parameter.name});
     swatch.addEventListener("input", () => {
@@ -395,7 +397,8 @@ const keys = {
   ArrowDown: () => turn(0, -5), "+": () => turn(0, 0, 0.9), "-": () => turn(0, 0, 1 / 0.9),
   " ": pause, r: reset, m: () => choose_next("mode"), l: () => choose_next("layer"),
   t: () => choose_next("curve"), "[": () => expose(Number($("exposure").value) - 0.5),
-  "]": () => expose(Number($("exposure").value) + 0.5), s: () => $("png").click(), e: () => $("exr").click(),
+  "]": () => expose(Number($("exposure").value) + 0.5),
+  s: () => $("png").click(), e: () => $("exr").click(),
   c: () => copy("options"), x: () => copy("xml"), "?": () => $("help").showModal(),
 };
 addEventListener("keydown", (event) => {

@@ -396,6 +396,20 @@ TEST(LiveRender, RendersALayerWhereItIsLookedAt) {
   EXPECT_EQ(choose("color").image, depth.image) << "and keeps it";
 }
 
+TEST(LiveRender, ALayerThatCannotBeRenderedIsAnErrorUntilAnotherIsChosen) {
+  WatchedRender live(settings_of({{"rng", "xorwow"}}), {});
+  live.set_watched(true);
+  wait_until(live, is_done);
+  SettingsChange change;
+  change.layer = "depth";
+  live.change_display(change);
+  const auto has_failed = [](const LiveState& s) { return s.status == LiveStatus::failed; };
+  EXPECT_NE(wait_until(live, has_failed).error.find("--rng"), std::string::npos);
+  change.layer = "color";
+  live.change_display(change);
+  expect_same(*wait_until(live, is_done).views.front().image, rendered({{"rng", "xorwow"}}));
+}
+
 // Against a scene that was loaded with the other values.
 TEST(LiveRender, EditsMaterialsAndLights) {
   WatchedRender live(settings_of(), {});

@@ -937,7 +937,8 @@ class InBrowser(Program):
         self.start(spp="4")
         tab = self.open()
         wait_for(lambda: tab.samples() == [4], "the image")
-        rest = tab.pixels()
+        rest = self.image()
+        wait_for(lambda: tab.pixels() == rest, "the image on the page")
         tab.click("#parameters summary")
         rows = wait_for(lambda: tab.value('document.querySelectorAll("#list .row").length'),
                         "the parameters")
@@ -988,7 +989,7 @@ class InBrowser(Program):
 
     def test_a_telephone(self):
         """Nothing is wider than the screen, and controls are as large as a finger."""
-        self.start("--width", "600", "--height", "300", spp="8", scene="cornell")
+        self.start("--width", "300", "--height", "150", spp="8")
         tab = self.open()
         tab.set_width(390, 844)
         wait_for(lambda: tab.samples() == [8], "the image")
@@ -1006,6 +1007,14 @@ class InBrowser(Program):
                  '.map((e) => e.id)')
         self.assertEqual(tab.value(small), [])
         tab.picture("telephone-390")
+        tab.value("scrollTo(0, 0)")
+        x, y = tab.middle()
+        for kind, apart in (("Start", 20), ("Move", 30), ("Move", 40), ("End", None)):
+            fingers = [] if apart is None else [{"x": x + side * apart, "y": y, "id": side + 1}
+                                                for side in (-1, 1)]
+            tab.call("Input.dispatchTouchEvent", type=f"touch{kind}", touchPoints=fingers)
+        wait_for(lambda: abs(self.peek()["orbit"]["zoom"] - 0.5) < 0.01, "half the distance")
+        self.assertEqual(self.peek()["orbit"]["yaw"], 0)
         self.assert_no_problems()
 
     def test_the_page_says_when_the_program_has_ended(self):
