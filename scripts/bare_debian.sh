@@ -8,17 +8,24 @@ debian_release=$(. /etc/os-release && printf '%s' "${VERSION_CODENAME:-}")
 
 # make_bare_debian RELEASE FOLDER: anew, from this machine's mirror.
 make_bare_debian() {
-  local release=$1 tree=$2 mirror file
+  local release=$1 tree=$2 mirror file options=() script=()
   ((EUID == 0)) || die "root is needed: debootstrap and chroot"
   install_missing debootstrap
   # shellcheck disable=SC2016 # apt-get's own variables
   mirror=$(apt-get indextargets --format '$(SITE)' "Codename: $debian_release" | head -n 1)
-  [[ ! $release =~ ^(jammy|noble)$ ]] || mirror=${PTEXP_UBUNTU_MIRROR:-}
+  if [[ $release =~ ^(jammy|noble)$ ]]; then
+    install_missing ubuntu-keyring
+    mirror=${PTEXP_UBUNTU_MIRROR:-}
+    # shellcheck disable=SC2054 # one option
+    options=(--components=main,universe --keyring=/usr/share/keyrings/ubuntu-archive-keyring.gpg)
+    script=(/usr/share/debootstrap/scripts/gutsy) # that of all Ubuntus; Debian 12 has no name of noble
+  fi
   [[ -n $mirror ]] || die "apt-get indextargets names no mirror of $debian_release; for Ubuntu set \
 PTEXP_UBUNTU_MIRROR"
   remove_bare_debian "$tree"
   mkdir -p "$tree"
-  debootstrap --variant=minbase --include=ca-certificates "$release" "$tree" "$mirror"
+  debootstrap --variant=minbase --include=ca-certificates "${options[@]}" "$release" "$tree" \
+    "$mirror" "${script[@]}"
   for file in /etc/apt/apt.conf.d/*proxy*; do # how this machine reaches its mirror
     [[ ! -e $file ]] || cp "$file" "$tree/etc/apt/apt.conf.d/"
   done

@@ -112,7 +112,7 @@ class Releases(unittest.TestCase):
         self.release.make_wheel = lambda folder: (folder / "a.whl").write_bytes(b"wheel")
         self.release.make_package = lambda folder: (folder / "a.deb").write_bytes(b"package")
         self.release.compiler = lambda: "planted 1.2"
-        self.release.check_tree = lambda: None
+        self.release.check_tree = lambda: "abc"
 
     def test_a_folder_with_all_that_is_true_of_it(self):
         self.release.make_release(self.folder)
@@ -141,6 +141,11 @@ class Releases(unittest.TestCase):
     def test_nothing_is_left_of_one_that_fails(self):
         def fail(_):
             raise ValueError("no room")
+        self.release.make_archive = self.release.make_wheel
+        with mock.patch.object(self.release, "check_tree", iter(["abc", "def"]).__next__):
+            with self.assertRaisesRegex(ValueError, "HEAD has moved from abc"):
+                self.release.make_release(self.folder)
+        self.assertEqual(list(self.folder.parent.iterdir()), [])
         for step in ("make_package", "write_sums"):
             with mock.patch.object(self.release, step, fail):
                 with self.assertRaisesRegex(ValueError, "no room"):
