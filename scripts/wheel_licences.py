@@ -53,7 +53,8 @@ def nanobind_licences():
 
 def licences(names):
     """{path below licenses/: text} for a wheel with these files."""
-    packages = {package_of(name) for name in names if ".libs/" in name}
+    packages = {package_of(name) for name in names
+                if ".libs/" in name and not name.endswith("/")}
     packages.update(HEADERS)
     if any("libblosc" in name for name in names):
         packages.add(NANOVDB)
