@@ -139,7 +139,8 @@ class Advisor {
 
   /// False if there is no such way, it equals another one, or there is no time for it.
   bool try_way(const WayOptions& options) {
-    Trial trial{.options = options};
+    Trial trial;
+    trial.options = options;
     try {
       const std::vector<Decision> plan = measurer_.plan(options);
       std::string values;

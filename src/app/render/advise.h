@@ -52,7 +52,7 @@ struct AdvisedWay {
   double total_ms = 0;        ///< tree and kernels for all samples, median over the rounds
   double ratio = 1;           ///< median over the rounds of the default's total time over its own
   double low = 1, high = 1;   ///< 95 % interval of the ratio; 0 and infinity: unknown
-  std::string word = "same";  ///< faster, slower, same or ambiguous, as scripts/report has them
+  std::string word = "same";  ///< by the interval: faster, slower, same (within 2 %) or ambiguous
   WayRun run;                 ///< the last one
 };
 
