@@ -209,7 +209,7 @@ LiveRender::LiveRender(std::vector<Setting> settings, const Warn& warn)
   const bool has_size = asked.given.contains("width") || asked.given.contains("height") ||
                         defaults_.width || defaults_.height || crop_;
   if (!has_size) size_.width = width_without_bars(scene, camera_, size_);
-  tried_ = materials_and_lights(scene);
+  if (scene.materials.size() <= editable_materials_max) tried_ = materials_and_lights(scene);
   for (const SceneParameter& parameter : scene_parameters(tried_))
     if (parameter.changes.shading) parameters_.push_back({parameter, parameter.get(tried_)});
 

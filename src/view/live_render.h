@@ -85,6 +85,9 @@ struct LiveParameter {
   std::vector<float> value;  ///< in the scene as it was loaded
 };
 
+/// A scene of more materials can be edited in its sky alone: no page could list them.
+inline constexpr std::size_t editable_materials_max = 4096;
+
 /// The render of these settings in `mode`, seen by the scene's own camera. Leaves out what has no
 /// effect in that mode. Throws Error for settings that go together in no mode.
 RenderCommand mode_command(const std::vector<Setting>& settings, Mode mode);

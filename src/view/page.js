@@ -353,10 +353,11 @@ function grouped(list) {
   return groups;
 }
 function show_parameters() {
+  if (!$("parameters").open) return;
   for (const {members} of parameters ?? []) for (const one of members) one.show();
 }
 $("parameters").addEventListener("toggle", () => {
-  if ($("parameters").open && !parameters) list_parameters();
+  if ($("parameters").open) parameters ? show_parameters() : list_parameters();
 });
 $("filter").addEventListener("input", () => {
   const words = $("filter").value.toLowerCase();

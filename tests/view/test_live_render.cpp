@@ -477,6 +477,15 @@ TEST(LiveRender, RefusesParametersAndChangesNothing) {
   EXPECT_EQ(live.state().settings, before.settings);
 }
 
+TEST(LiveRender, ListsNoMoreMaterialsThanAPageCanShow) {
+  const auto parameters = [](const char* spheres) {
+    const LiveRender live(settings_of({{"scene", "spheres"}, {"spheres", spheres}}), {});
+    return live.parameters().size();
+  };
+  EXPECT_GT(parameters("4000"), 8000u);
+  EXPECT_EQ(parameters("4096"), 2u) << "with that of the ground one too many; the sky's two";
+}
+
 // Half the error for four times the samples, and as the program estimates it.
 TEST(LiveRender, EstimatesItsError) {
   WatchedRender live(settings_of({{"spp", "64"}}), {});
