@@ -1,8 +1,8 @@
 """`ptexp view` as a browser and its enemies use it: by HTTP, and in headless Chromium.
 
 The environment variable PTEXP names the executable (build/release/src/ptexp). With
-PTEXP_NEEDS_CHROMIUM=1 a missing Chromium is an error and not a skip. PTEXP_SCREENSHOTS names a folder
-for pictures of the page.
+PTEXP_NEEDS_CHROMIUM=1 a missing Chromium is an error and not a skip. PTEXP_SCREENSHOTS names a
+folder for pictures of the page.
 """
 import base64
 import contextlib
@@ -754,7 +754,7 @@ class Tab:
 
     def choose(self, element, value):
         self.value(f'(() => {{ const e = document.querySelector("{element}"); e.value = "{value}"; '
-                   'e.dispatchEvent(new Event("input")); e.dispatchEvent(new Event("change")); })()')
+                   'for (const kind of ["input", "change"]) e.dispatchEvent(new Event(kind)); })()')
 
     def key(self, key):
         for kind in ("keyDown", "keyUp"):
@@ -1002,8 +1002,9 @@ class InBrowser(Program):
         tab.choose("#mode", "split")
         wait_for(lambda: tab.samples() == [8, 8], "both modes")
         self.assertLessEqual(tab.value("document.scrollingElement.scrollWidth"), 390)
-        inside = ('[...document.querySelectorAll("main *")].filter((e) => e.getClientRects().length '
-                  '&& e.getBoundingClientRect().right > 391).map((e) => e.id || e.tagName)')
+        self.assertGreater(tab.value('document.querySelector("canvas").clientWidth'), 350)
+        inside = ('[...document.querySelectorAll("main *")].filter((e) => e.getClientRects()'
+                  '.length && e.getBoundingClientRect().right > 391).map((e) => e.id || e.tagName)')
         self.assertEqual(tab.value(inside), [])
         small = ('[...document.querySelectorAll("button, select, .button")].filter((e) => '
                  'e.getClientRects().length && e.getBoundingClientRect().height < 32)'
