@@ -13,7 +13,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PTEXP = Path(os.environ.get("PTEXP", ROOT / "build" / "release" / "src" / "ptexp")).resolve()
-RENDERS = ("resume", "verify", "view")  # these take the program's options, too
+RENDERS = ("resume", "verify", "view", "advise")  # these take the program's options, too
 
 
 def ptexp(*arguments):

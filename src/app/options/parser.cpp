@@ -25,8 +25,8 @@ constexpr const char* view_text =
     "Shows the render in progress on a page for the browsers of this machine, where\n"
     "camera, mode and exposure can be changed, until Ctrl-C.";
 constexpr const char* advise_text =
-    "Renders the scene by both modes and by the options that matter for it, in turns, and\n"
-    "prints which is the fastest here, how sure that is, and why. It takes --time-limit\n"
+    "Renders the scene by both modes and by the options that matter, in turns, and\n"
+    "prints which is the fastest here, how sure that is, and why. Takes --time-limit\n"
     "seconds, by default 60, and writes no image.";
 constexpr const char* trace_text =
     "Traces rays from a file, measures the rate and compares with reference hits.\n"
