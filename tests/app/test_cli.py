@@ -388,6 +388,38 @@ class Statistics(CommandLine):
         self.assertEqual(int(counts.pop()[0]), 24 * 12 * 4)
 
 
+class Advise(CommandLine):
+    SMALL = ("--device", "cpu", "--threads", "1", "--width", "16", "--height", "8", "--spp", "2",
+             "--max-depth", "3")
+
+    def test_advice_can_be_followed(self):
+        run = self.run_ok("advise", "spheres", "--spheres", "20", *self.SMALL)
+        lines = run.stdout.splitlines()
+        self.assertLessEqual(len(lines), 10, run.stdout)
+        found = re.match(r"spheres, CPU, 1 thread: use (the default|--.*?)[;,] ", lines[0])
+        self.assertTrue(found, run.stdout)
+        self.render_ok("--scene", "spheres", *found[1].removeprefix("the default").split())
+        self.assertIn("--mode megakernel", run.stdout)
+        self.assertIn("Why auto chose wavefront: ", run.stdout)
+        self.assertRegex(run.stderr, "trying --mode megakernel\n")
+        self.assertEqual(self.files(), ["image.exr"])  # of the render; advice writes none
+
+    def test_quiet_has_the_advice_alone(self):
+        run = self.run_ok("advise", "spheres", *self.SMALL, "--mode", "megakernel", "--quiet")
+        self.assertEqual(run.stderr, "")
+        self.assertNotIn("wavefront", run.stdout)
+
+    def test_what_it_refuses(self):
+        for arguments, words in (((), "expected SCENE"), (("spheres", "--output", "a.exr"), "--output"),
+                                 (("spheres", "--target-error", "0.1"), "--target-error"),
+                                 (("spheres", "--time-limit", "0"), "--time-limit 0"),
+                                 (("spheres", "-q", "--time-limit", "1e-9"), "no render ended before"),
+                                 (("nowhere",), "no such scene"), (("absent.xml",), "absent.xml"),
+                                 (("spheres", "--device", "cpu", "--kernel", "loop"), "--kernel")):
+            self.assert_refused(self.run_ptexp("advise", *arguments), words)
+        self.assertEqual(self.files(), [])
+
+
 class BadInput(CommandLine):
     """Everything here is refused before any work, with one line and without a trace."""
 
@@ -828,6 +860,10 @@ class Interruption(CommandLine):
         self.assertIn("interrupted: SIGUSR1 keeps samples where there is a --checkpoint; no image "
                       "written", err)
         self.assertEqual(self.files(), [])
+
+    def test_advice_ends_by_a_signal(self):
+        process = self.start_command("advise", "cornell", "--device", "cpu", "--spp", "1000")
+        self.end(process, signal.SIGINT)
 
     def test_more_signals_do_not_lose_the_image(self):
         process = self.start("--width", "200", "--height", "100", "--spp", "1000000",

@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
+#include <set>
 #include <string>
 
 #include "app/commands/commands.h"
 #include "app/render/advise.h"
 #include "app/render/render_session.h"
 #include "app/terminal/process.h"
-#include "app/terminal/progress.h"
 #include "common/error/error.h"
 #include "common/error/terminal.h"
 
@@ -17,17 +17,11 @@ int advise_command(const AdviseCommand& command) {
   const auto warn = command.is_quiet ? RenderSession::Warn() : print_warning;
   RenderSession session(render, warn);
   note_signals();
-  std::optional<Advice> advice;
-  {
-    Progress progress(stderr, progress_style(stderr, command.is_quiet));
-    std::string last;
-    advice = advise(session,
-                    {command.settings, command.limit_s, interrupted, [&](const std::string& way) {
-                       if (way == last) return;
-                       progress.begin("rendering by " + way);
-                       last = way;
-                     }});
-  }
+  std::set<std::string> tried;
+  const auto says = [&](const std::string& way) {
+    if (!command.is_quiet && tried.insert(way).second) print_notice("trying " + way);
+  };
+  const auto advice = advise(session, {command.settings, command.limit_s, interrupted, says});
   if (interrupted()) {
     print_notice("interrupted");
     return exit_code_of_signal();
