@@ -12,6 +12,7 @@ from .claims import claims_table
 from .devices import side_by_side
 from .images import image_section
 from .modes import MOST_DAYS, silent, verdicts
+from .submitted import other_devices
 from .verdicts import meaning
 from .words import SAME
 
@@ -158,7 +159,7 @@ def has_section(name, devices):
                                 for table, device in zip(tables, there))
 
 
-def page(devices, limit_bytes):
+def page(devices, limit_bytes, submissions=()):
     tell_apart(devices)
     names = [name for name in dict.fromkeys(name for device in devices for name in device.tables)
              if has_section(name, devices)]
@@ -171,5 +172,6 @@ def page(devices, limit_bytes):
         causes=articles(CAUSES, devices), others=articles(OTHERS, devices),
         contents="".join(f'<a href="#{anchor(name)}">{escape(name.replace("_", " "))}</a>'
                          for name in names), claims=for_each(devices, claims_table),
+        submitted=other_devices(devices, submissions),
         experiments="\n".join(experiment(name, devices) for name in names), images=pictures,
         files=for_each(devices, table_list))
