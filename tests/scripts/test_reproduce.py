@@ -15,7 +15,7 @@ PTEXP = Path(os.environ.get("PTEXP", ROOT / "build" / "release" / "src" / "ptexp
 REPRODUCE = ROOT / "scripts" / "reproduce"
 # They need another build.
 NOT_IN_IT = {"compare_builds", "divergence"}
-BUDGET_S = 36 * 60
+BUDGET_S = {"all": 36 * 60, "ten": 600, "minute": 60}
 
 # A ptexp that dies where it is to keep states of random numbers, unless the file `mended` is there.
 PARTLY_BROKEN = """#!/bin/sh
@@ -47,15 +47,42 @@ class Reproduce(unittest.TestCase):
                    if "harness.main(" in path.read_text(encoding="utf-8")}
         self.assertEqual({name for name, _ in steps}, scripts - NOT_IN_IT)
         seconds = sum(int(of_step) for _, of_step in steps)
-        self.assertEqual(int(total[1]), seconds)
-        self.assertLess(seconds, BUDGET_S)
-        for line in done.stdout.splitlines()[:-1]:  # commands that the experiments accept
+        self.assertEqual(total, ("all", str(seconds)))
+        self.assertLess(seconds, BUDGET_S["all"])
+        self.check_commands(done.stdout)
+
+    def check_commands(self, text):
+        """That the experiments accept them; returns what each would measure."""
+        found = {}
+        for line in text.splitlines()[:-1]:
             script, *options = line.partition(" s  ")[2].split()
             listed = subprocess.run(
                 [sys.executable, script, *options, "--ptexp", PTEXP, "--device", "cpu", "--list",
                  "--quick", "--output", tempfile.gettempdir()],
                 capture_output=True, text=True, check=False)
             self.assertEqual(listed.returncode, 0, listed.stderr)
+            found[line.split()[0]] = listed.stdout
+        return found
+
+    def test_smaller_tiers(self):
+        every = [line.split()[0] for line in reproduce("--list").stdout.splitlines()]
+        names = {}
+        for tier in ("ten", "minute"):
+            done = reproduce("--tier", tier, "--list", "--output", "out")
+            *steps, total = re.findall(r"(?m)^(\w+) +(\d+) s", done.stdout)
+            names[tier] = [name for name, _ in steps]
+            self.assertEqual(total, (tier, str(sum(int(seconds) for _, seconds in steps))))
+            self.assertLess(int(total[1]), BUDGET_S[tier])
+            self.assertEqual(done.stdout.count(f" --output out/{tier}"), len(steps))
+            measured = self.check_commands(done.stdout)
+            for mode in ("megakernel", "wavefront"):
+                self.assertIn(f"--mode {mode} --scene cornell ", measured["defaults"])
+        self.assertEqual(names["ten"], [name for name in every if name in names["ten"]])
+        self.assertEqual(names["minute"], ["defaults"])
+        self.assertLess(set(names["minute"]), set(names["ten"]))
+        wrong = reproduce("--tier", "minute", "--only", "depth")
+        self.assertEqual(wrong.returncode, 2)
+        self.assertIn("--only depth: expected some of defaults", wrong.stderr)
 
     def test_scaling_wants_several_gpus(self):
         with tempfile.TemporaryDirectory(prefix="ptexp reproduce ") as name:
