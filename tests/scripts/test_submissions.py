@@ -305,19 +305,22 @@ class Files(InFolder):
 
     def test_the_list_and_the_map(self):
         other = with_value(["device", "name"], "Other GPU")
-        other["works"].pop()
+        other["works"][1]["width"] = 64
+        other["works"][1]["megakernel"] = {**TIMES, "kernel_ms_median": 0.5, "kernel_ms_low": 0.5,
+                                           "kernel_ms_high": 0.625}
         good = [self.plant("a.json", GOOD), self.plant("b.json", other)]
         done = run("submissions", *good, "--map")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         lines = done.stdout.splitlines()
         self.assertRegex(lines[0], r"^a: AMD Ryzen.*driver 580\.159\.04.*ptexp 0\.2\.0 0123456 Release, "
                                    r"2026-11-29, tier minute, wavefront faster in 2 of 2 works, claims: 1$")
-        self.assertRegex(lines[1], "^b: Other GPU.* faster in 1 of 1 works")
+        self.assertRegex(lines[1], "^b: Other GPU.* wavefront faster in 1 and slower in 1 of 2 works, ")
         self.assertRegex(lines[3], r"^megakernel / wavefront  .*GHz  +Other GPU$")
         value = re.escape("2.00 [1.52, 2.10]")
         self.assertRegex(lines[4], rf"^dial:16:0:closed 600x300, .*  {value}  +{value}$")
         self.assertRegex(lines[5], rf"^sha256 0123456789abcdef 600x300, .*  {value}  +-$")
-        self.assertEqual(len(lines), 6)
+        self.assertRegex(lines[6], r"^sha256 0123456789abcdef 64x300, .*  -  +0\.500 \[0\.400, 0\.625\]$")
+        self.assertEqual(len(lines), 7)
         bad = self.plant("c.json", with_value(["tier"], "hour"))
         done = run("submissions", good[0], bad, self.folder / "nothing.json")
         self.assertEqual((done.returncode, len(done.stdout.splitlines())), (1, 1))
