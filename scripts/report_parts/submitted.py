@@ -3,13 +3,14 @@ own devices."""
 import sys
 from pathlib import Path
 
-from .html import Cell, html_table, value_cell, verdict_cell
 from .claims import COLOURS, judge_all
+from .html import Cell, html_table, value_cell, verdict_cell
 from .modes import Work, verdicts
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "experiments"))
-from lib.claim_rules import inside  # noqa: E402  pylint: disable=wrong-import-position
-from lib.submission_files import column_names, read_submissions  # noqa: E402,F401  pylint: disable=wrong-import-position
+# pylint: disable=wrong-import-position
+from lib.claim_rules import inside  # noqa: E402
+from lib.submission_files import column_names, read_submissions  # noqa: E402,F401
 
 NONE = Cell("<td></td>")
 
