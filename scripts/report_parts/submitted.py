@@ -58,7 +58,8 @@ def verdicts_table(devices, submissions):
     columns = [own_claims(device) for device in devices] + theirs
     rows = [[claim, *(found.get(claim, NONE) for found in columns)]
             for claim in sorted({claim for found in theirs for claim in found})]
-    return html_table(["claim", *heads_of(devices, submissions)], rows, "judged", "Verdicts, and the cases within the rule's bounds")
+    return html_table(["claim", *heads_of(devices, submissions)], rows, "judged",
+                      "Verdicts, and the cases within the rule's bounds")
 
 
 def other_devices(devices, submissions):
