@@ -71,7 +71,9 @@ struct PlantedDevice {
       run.device = "planted";
       run.stages = {{"intersect", 0.75 * run.kernel_ms, 1},
                     {"shade_surface", 0.25 * run.kernel_ms, 1}};
-      clock_s += 1e-3 * run.wall_ms * (warms_up ? 2 : 1);
+      const double seconds = 1e-3 * run.wall_ms * (warms_up ? 2 : 1);
+      clock_s += std::min(seconds, work.limit_s);
+      if (seconds > work.limit_s) return std::nullopt;
       return run;
     };
     return measurer;
@@ -168,6 +170,15 @@ TEST(Advise, RendersASmallerImageWhereOneSampleTakesLong) {
   EXPECT_GE(advice.rounds, 5);
   EXPECT_NEAR(advice.ways.at(0).ratio, 2, 0.05);
   EXPECT_NEAR(advice.standard.total_ms, 640'000, 20'000);
+}
+
+TEST(Advise, GivesUpWhatTakesManyTimesAsLong) {
+  PlantedDevice device{
+      .times_ms = {{"the default", 300}, {"--mode megakernel", 310}, {"--accel bvh2", 30'000'000}}};
+  const Advice advice = device.advice();
+  EXPECT_LT(device.clock_s, 60);
+  EXPECT_GE(advice.rounds, 5);
+  EXPECT_EQ(advice.ways.size(), 1u);
 }
 
 TEST(Advise, AWayThatDoesNotExistIsLeftOut) {

@@ -137,7 +137,17 @@ class Advisor {
     return run.build_ms + run.kernel_ms / share;
   }
 
-  /// False if there is no such way, it equals another one, or there is no time for it.
+  /// A way that takes many times as long as the fastest is given up.
+  WayWork work_of_try() const {
+    WayWork work = advice_.work;
+    for (const Trial& trial : trials_) {
+      const double allowed_s = 1e-3 * (8 * trial.run.wall_ms + 8 * trial.run.build_ms) + 0.5;
+      work.limit_s = std::min(work.limit_s, allowed_s);
+    }
+    return work;
+  }
+
+  /// False if there is no such way, it equals another one, or takes too long.
   bool try_way(const WayOptions& options) {
     Trial trial;
     trial.options = options;
@@ -149,7 +159,7 @@ class Advisor {
       trial.measured = as_planned(options, plan);
       trial.mode = decided(plan, "mode");
       const bool is_short = trials_.empty() || 1e-3 * trials_.front().run.wall_ms < long_s;
-      const auto run = measurer_.render(trial.measured, advice_.work, is_short, false);
+      const auto run = measurer_.render(trial.measured, work_of_try(), is_short, false);
       if (!run) return false;
       plans_[values] = true;
       trial.run = *run;
@@ -181,6 +191,8 @@ class Advisor {
       for (const char* name : switches) {
         if (given_.contains(name)) continue;
         for (const std::string& value : values_of(name)) {
+          // Where there is a tree, all primitives are too many.
+          if (value == "brute" && mode.run.build_ms > 0) continue;
           WayOptions options = mode.options;
           options.emplace_back(name, value);
           // Half of the time is for turns; each builds the trees that differ.
@@ -373,7 +385,8 @@ std::optional<Advice> advise(RenderSession& session, const AdviceRequest& reques
     command.options.counters = counts;
     if (request.says) request.says(way_text(options));
     MeasureHooks hooks;
-    hooks.stop = [&] { return request.stop() || steady_seconds() - begin_s > request.limit_s; };
+    const double end_s = std::min(begin_s + request.limit_s, steady_seconds() + work.limit_s);
+    hooks.stop = [&] { return request.stop() || steady_seconds() > end_s; };
     const RenderResult result = session.render(command, hooks, {});
     if (result.interrupted || !result.has_image) return std::nullopt;
     const RenderReport& report = result.report;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -31,8 +32,9 @@ struct WayRun {
 
 /// What of the render is rendered: less than all where all would take too long.
 struct WayWork {
-  int samples = 1;   ///< per pixel
-  double scale = 1;  ///< of width and height, in (0, 1]
+  int samples = 1;                                           ///< per pixel
+  double scale = 1;                                          ///< of width and height, in (0, 1]
+  double limit_s = std::numeric_limits<double>::infinity();  ///< of wall time, the tree included
 };
 
 /// How ways are planned and rendered. Both functions throw Error for ways that do not exist for the
