@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <random>
 
 #include "app/render/rank_setup.h"
 #include "app/render/render_outputs.h"
 #include "app/report/film_header.h"
+#include "app/report/report.h"
 #include "common/error/error.h"
 #include "common/error/host_memory.h"
 #include "common/film/aov.h"
@@ -130,22 +130,16 @@ int width_without_bars(const SceneData& scene, const CameraParameters& camera,
 
 std::optional<TimeRatio> time_ratio(std::span<const Round> rounds) {
   if (rounds.size() < rounds_min) return std::nullopt;
-  constexpr std::size_t draws = 1000;
   const auto ratio = [](const Round& sum) { return sum[1] > 0 ? sum[0] / sum[1] : 0; };
   Round all{};
   for (const Round& round : rounds) all[0] += round[0], all[1] += round[1];
-  std::vector<double> ratios;
-  std::minstd_rand random;  // NOLINT: the same interval for the same rounds
-  for (std::size_t draw = 0; draw < draws; ++draw) {
-    Round sum{};
-    for (std::size_t i = 0; i < rounds.size(); ++i) {
-      const Round& round = rounds[random() % rounds.size()];
-      sum[0] += round[0], sum[1] += round[1];
-    }
-    ratios.push_back(ratio(sum));
-  }
-  std::ranges::sort(ratios);
-  return TimeRatio{ratio(all), ratios[draws / 40], ratios[draws - 1 - draws / 40], rounds.size()};
+  const auto [low, high] =
+      bootstrap_interval(rounds.size(), 1000, [&](std::span<const std::size_t> indices) {
+        Round sum{};
+        for (const std::size_t i : indices) sum[0] += rounds[i][0], sum[1] += rounds[i][1];
+        return ratio(sum);
+      });
+  return TimeRatio{ratio(all), low, high, rounds.size()};
 }
 
 RenderCommand mode_command(const std::vector<Setting>& settings, Mode mode) {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <random>
+#include <set>
 
 #include "app/options/option_list.h"
 #include "app/render/render_session.h"
@@ -33,18 +33,15 @@ constexpr int turn_renders_max = 10;
 
 double median(std::vector<double> values) { return spread(std::move(values)).median; }
 
-/// The 95 % percentile interval of the bootstrap (Efron 1979) of the median.
+/// Of 95 %, by bootstrap; unknown of too few values.
 std::pair<double, double> interval_of_median(const std::vector<double>& values) {
   if (values.size() < 3) return {0.0, std::numeric_limits<double>::infinity()};
-  constexpr std::size_t resamples = 4000;
-  std::mt19937 random(20231122);  // the same values give the same interval
-  std::vector<double> medians(resamples), drawn(values.size());
-  for (double& one : medians) {
-    for (double& value : drawn) value = values[random() % values.size()];
-    one = median(drawn);
-  }
-  std::ranges::sort(medians);
-  return {medians[resamples / 40], medians[resamples - 1 - resamples / 40]};
+  std::vector<double> drawn;
+  return bootstrap_interval(values.size(), 4000, [&](std::span<const std::size_t> indices) {
+    drawn.clear();
+    for (const std::size_t i : indices) drawn.push_back(values[i]);
+    return median(drawn);
+  });
 }
 
 std::string decided(const std::vector<Decision>& plan, const std::string& option) {
@@ -161,7 +158,7 @@ class Advisor {
       const bool is_short = trials_.empty() || 1e-3 * trials_.front().run.wall_ms < long_s;
       const auto run = measurer_.render(trial.measured, work_of_try(), is_short, false);
       if (!run) return false;
-      plans_[values] = true;
+      plans_.insert(values);
       trial.run = *run;
       trial.first_ms = total_ms(*run);
     } catch (const Error&) {
@@ -301,8 +298,8 @@ class Advisor {
   const WayMeasurer& measurer_;
   const GivenOptions& given_;
   const double begin_s_, limit_s_;
-  std::map<std::string, bool> plans_;  ///< of all ways that were tried
-  std::vector<Trial> trials_;          ///< the default first
+  std::set<std::string> plans_;  ///< of all ways that were tried
+  std::vector<Trial> trials_;    ///< the default first
   Advice advice_;
 };
 

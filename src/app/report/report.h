@@ -2,7 +2,10 @@
 // and the numbers that they share, of the repeats of a measurement and of the hardware counters.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +24,13 @@ struct Spread {
 
 /// All zero for no values.
 Spread spread(std::vector<double> values);
+
+/// The 95 % percentile interval, by bootstrap (Efron 1979), of a statistic of `count` measured
+/// things, at least one: `statistic` is called with the indices of each resample. The same
+/// statistic has the same interval each time.
+std::pair<double, double> bootstrap_interval(
+    std::size_t count, std::size_t resamples,
+    const std::function<double(std::span<const std::size_t>)>& statistic);
 
 struct StageSummary {
   std::string stage;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <random>
 
 #include "app/report/report.h"
 
@@ -42,6 +43,20 @@ Spread spread(std::vector<double> values) {
   const double median =
       values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
   return {median, values.front(), values.back()};
+}
+
+std::pair<double, double> bootstrap_interval(
+    std::size_t count, std::size_t resamples,
+    const std::function<double(std::span<const std::size_t>)>& statistic) {
+  std::mt19937 random(20231122);
+  std::vector<double> values(resamples);
+  std::vector<std::size_t> drawn(count);
+  for (double& value : values) {
+    for (std::size_t& index : drawn) index = random() % count;
+    value = statistic(drawn);
+  }
+  std::ranges::sort(values);
+  return {values[resamples / 40], values[resamples - 1 - resamples / 40]};
 }
 
 RunSummary summarize(const RenderReport& report) {
