@@ -44,7 +44,7 @@ def same_image(scene, options):
 
 
 def configurations(arguments, device):
-    scenes = BUILT_IN + [(path, 1024, 64, None) for path in scene_files(arguments)]
+    scenes = BUILT_IN + [(path, 1024, 16, None) for path in scene_files(arguments)]
     if arguments.quick:
         scenes = [(scene.replace("M", "K").replace("10K", "10"), size // 32, 2, target)
                   for scene, size, _, target in scenes]
