@@ -1,79 +1,138 @@
-"""The measured numbers of README.md and of the reports' first sections are those of the tables in
-results/."""
+"""The measured numbers of README.md, results/README.md and of the reports' first sections are those of
+the tables in results/."""
 import csv
 import html
+import json
 import re
+import subprocess
+import sys
+import tempfile
 import unittest
+from importlib.machinery import SourceFileLoader
+from importlib.util import module_from_spec, spec_from_loader
 from statistics import geometric_mean, mean
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 RESULTS = ROOT / "results" / "nvidia-h200"
 
-PAPER, STATUE = "spheres 600x300", "statue:1M 1024x1024"
-# What README.md says, with the number's place and format; table, row and column of the number, and
-# what the column is multiplied with.
-NUMBERS = [
-    ("takes the megakernel {:.1f} ms", "defaults", f"{PAPER}: megakernel", "kernel_ms_median", 1),
-    ("the wavefront {:.1f} ms", "defaults", f"{PAPER}: wavefront", "kernel_ms_median", 1),
-    ("one CPU thread {:.0f} s", "image_size", "serial, CPU 2400x1200", "image_ms_median", 1e-3),
-    ("the megakernel {:.0f} ms, and one", "image_size", "megakernel, CUDA 2400x1200", "image_ms_median", 1),
-    ("{:.0f} million paths a second in the megakernel", "defaults",
-     f"{STATUE}: megakernel", "mpaths_per_s", 1),
-    ("{:.0f} million paths a second in the wavefront", "defaults", f"{STATUE}: wavefront",
-     "mpaths_per_s", 1),
-    *[(text, "ladder", f"{scene}: {step}", "kernel_ms_median", 1) for text, scene, step in [
-        ("16 materials takes {:.1f} ms in the plain", "dial:16:0:closed", "1 megakernel"),
-        ("{:.1f} ms in the block-local wavefront", "dial:16:0:closed", "0 megakernel at its best"),
-        ("{:.1f} ms in a plain wavefront", "dial:16:0:closed", "2 split kernels"),
-        ("{:.1f} ms in one with all its steps", "dial:16:0:closed", "12 persistent warps"),
-        ("spheres at 1200x600, 50 samples, the megakernel takes {:.1f} ms", "spheres", "0 megakernel"),
-        ("the plain wavefront {:.1f} ms and", "spheres", "1 split kernels"),
-        ("and the full one {:.1f} ms.", "spheres", "11 two rays a wave")]],
-]
-MEASURED = r"[\d.,]+ (?:ms|s|million paths a second)\b"  # what README.md may not say unless listed
+SCRIPTS = ROOT / "scripts"
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(SCRIPTS))
+import page_number_list as listed  # noqa: E402
+LOADER = SourceFileLoader("page_numbers", str(SCRIPTS / "page_numbers"))
+page_numbers = module_from_spec(spec_from_loader("page_numbers", LOADER))
+LOADER.exec_module(page_numbers)
+
+# Numbers that a page may not have unless a Place covers them: fractions, thousands, and with units.
+MEASURED = r"\d[\d,]*\.\d+|\d{1,3}(?:,\d{3})+|\d+ (?:ms|s|%|times|million paths a second)(?!\w)"
+# Others' numbers, versions, and conditions of the experiments
+EXEMPT = {listed.MAIN: ["Ubuntu 24.04", "CC BY 3.0", "by/3.0"],
+          listed.TABLES: ["3.9.1", "12,987", "4,705", "11,061", "4,054", "8,765", "1,512",
+                          "1.00 to 1.12 times", "0.07, 0.07 and 0.00 %", "CC-BY 3.0"]}
+# The commit whose one run of scripts/reproduce made all tables of RESULTS, its first seven digits or more;
+# empty: they are of several commits yet.
+COMMIT_OF_TABLES = ""
+NOT_OF_REPRODUCE = {"law"}  # made of the other tables
 
 
-def text_of(table, name, column):
-    with open(RESULTS / f"{table}.csv", newline="", encoding="utf-8") as file:
-        row, = (row for row in csv.DictReader(file) if row["name"] == name)
-    return row[column]
-
-
-def number(*cell):
-    return float(text_of(*cell))
-
-
-class ReadmeNumbers(unittest.TestCase):
+class PageNumbers(unittest.TestCase):
     def setUp(self):
-        text = (ROOT / "README.md").read_text(encoding="utf-8")
-        self.text = re.sub(r"\s+", " ", text)
-        self.expected = [text.format(number(*cell) * factor) for text, *cell, factor in NUMBERS]
+        self.texts = {page: (ROOT / page).read_text(encoding="utf-8")
+                      for page in [*EXEMPT, *(place.page for place in listed.PLACES)]}
 
     def test_numbers_are_those_of_the_tables(self):
-        for expected, (_, *cell, _) in zip(self.expected, NUMBERS):
-            self.assertIn(expected, self.text, f"README.md, by {' | '.join(cell)}")
+        for page, text in self.texts.items():
+            for start, end, value in page_numbers.slots_of(text, page):
+                self.assertEqual(text[start:end], value, f"{page}: {text[max(start - 60, 0):end]}")
+
+    def test_sentences_are_true_by_the_tables(self):
+        self.assertEqual(list(page_numbers.wrong_claims(self.texts)), [])
 
     def test_every_measured_number_is_listed(self):
-        listed = {found for text in self.expected for found in re.findall(MEASURED, text)}
-        self.assertEqual(set(re.findall(MEASURED, self.text)), listed)
+        for page in EXEMPT:
+            text = self.texts[page]
+            covered = [(start, end) for start, end, _ in page_numbers.slots_of(text, page)]
+            covered += [found.span() for one in EXEMPT[page]
+                        for found in re.finditer(page_numbers.spaced(one), text)]
+            found = [text[max(0, one.start() - 30):one.end()] for one in re.finditer(MEASURED, text)
+                     if not any(start < one.end() and one.start() < end for start, end in covered)]
+            self.assertEqual(found, [], page)
 
-    def test_what_is_extrapolated_says_so(self):
-        name = "serial, CPU 2400x1200"
-        if text_of("image_size", name, "extrapolated") == "yes":
-            self.assertRegex(self.text, r"one CPU thread \d+ s: extrapolated from a tenth of the")
-            share = [int(text_of("image_size", name, column)) for column in ("spp", "full_spp")]
-            self.assertEqual(10 * share[0], share[1])
+    def test_a_changed_table_changes_the_page(self):
+        page = listed.MAIN
+        text = self.texts[page]
+        places = [listed.Place(page, "the megakernel takes {:.1f} ms, the plain", [lambda: 7.25])]
+        slots = page_numbers.slots_of(text, page, places)
+        changed = page_numbers.rewritten(text, slots)
+        self.assertIn("7.2 ms, the plain wavefront", re.sub(r"\s+", " ", changed))
+        self.assertEqual(len(changed.splitlines()), len(text.splitlines()))
+        for wrong in ("no such sentence {:.1f} ms", "the wavefront {}"):
+            with self.assertRaises(listed.NumberError):
+                page_numbers.slots_of(text, page, [listed.Place(page, wrong, [lambda: 1])])
+
+    def test_a_sentence_that_the_tables_contradict_is_found(self):
+        said = listed.Claim(listed.MAIN, "On a million triangles the wavefront is faster", lambda: False)
+        gone = listed.Claim(listed.MAIN, "On a million triangles the megakernel is faster", lambda: True)
+        self.assertEqual([line.split(": ")[0] for line in page_numbers.wrong_claims(self.texts, [said, gone])],
+                         ["README.md", "README.md has no more"])
 
     def test_the_size_of_the_ladders_spheres(self):
-        sizes = [text_of("ladder", "spheres: 0 megakernel", column)
-                 for column in ("width", "height", "spp")]
-        self.assertIn("spheres at {}x{}, {} samples".format(*sizes), self.text)
+        row = listed.row_of("ladder", name="spheres: 0 megakernel")
+        self.assertIn("spheres at {width}x{height}, {spp} samples".format(**row),
+                      re.sub(r"\s+", " ", self.texts[listed.MAIN]))
 
     def test_the_paper_is_named(self):
         for name in ("README.md", "CITATION.cff"):
             self.assertIn("Parallel Path Tracing with CUDA",
                           (ROOT / name).read_text(encoding="utf-8"), name)
+
+
+def steps_of_reproduce():
+    """Those that one GPU can do."""
+    done = subprocess.run([sys.executable, SCRIPTS / "reproduce", "--list"], capture_output=True, text=True,
+                          check=True)
+    return {line.split()[0] for line in done.stdout.splitlines()[:-1]} - {"scaling"}
+
+
+def not_of_the_run(folder, steps, commit):
+    """What keeps the tables of a folder from being one run of the program of the commit."""
+    found = {path.stem for path in folder.glob("*.csv")} - NOT_OF_REPRODUCE
+    wrong = [f"{name}: {text}" for names, text in (
+        (steps - found, "missing"), (found - steps, "no step makes it")) for name in sorted(names)]
+    for name in sorted(found & steps):
+        facts = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
+        said = next(line.split()[1] for line in facts["program"] if line.startswith("commit "))
+        with open(folder / f"{name}.csv", newline="", encoding="utf-8") as file:
+            of_rows = {row["commit"] for row in csv.DictReader(file) if row.get("commit")}
+        others = {one for one in {said} | of_rows if not one.startswith(commit) or one.endswith("-dirty")}
+        wrong += [f"{name}: commit {', '.join(sorted(others))}"] if others else []
+        if facts.get("complete") is not True or facts.get("quick"):
+            wrong.append(f"{name}: incomplete or of --quick")
+    return wrong
+
+
+class OneRun(unittest.TestCase):
+    def test_tables_are_of_one_commit(self):
+        if not COMMIT_OF_TABLES:
+            self.skipTest("the tables of several commits are to be replaced by one run")
+        self.assertEqual(not_of_the_run(RESULTS, steps_of_reproduce(), COMMIT_OF_TABLES), [])
+
+    def test_a_table_of_another_commit_is_found(self):
+        with tempfile.TemporaryDirectory(prefix="ptexp one run ") as name:
+            folder = Path(name)
+            for table, commit, complete in (("a", "abcdef012345", True), ("b", "abcdef012345-dirty", True),
+                                            ("c", "abcdef012345", False), ("e", "abcdef012345", True),
+                                            ("law", "0", True)):
+                (folder / f"{table}.csv").write_text(f"name,commit\nx,{commit}\n", encoding="utf-8")
+                (folder / f"{table}.json").write_text(json.dumps({
+                    "program": ["ptexp 1", f"commit {commit}"], "complete": complete}), encoding="utf-8")
+            (folder / "a.csv").write_text("name,commit\nx,abcdef012345\ny,\n", encoding="utf-8")
+            self.assertEqual(not_of_the_run(folder, {"a", "b", "c", "d"}, "abcdef0"), [
+                "d: missing", "e: no step makes it", "b: commit abcdef012345-dirty",
+                "c: incomplete or of --quick"])
+            (folder / "a.csv").write_text("name,commit\nx,0123456\n", encoding="utf-8")
+            self.assertIn("a: commit 0123456", not_of_the_run(folder, {"a"}, "abcdef0"))
 
 
 def times_of(folder, table):
