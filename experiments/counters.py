@@ -11,10 +11,12 @@ import json
 import shlex
 import sys
 import tempfile
+from functools import partial
 from pathlib import Path
 
 from lib import harness
 from lib import program as ptexp
+from lib.grouped import measure_table
 from lib.harness import Configuration, Experiment, HarnessError
 from lib.provenance import scene_hash
 
@@ -107,43 +109,30 @@ def text_of(row):
             f"({float(row['predicted_bytes_per_ray']):.0f} predicted)")
 
 
+def measure(program, device, configuration, arguments):
+    """The rows of one configuration."""
+    with tempfile.TemporaryDirectory(prefix="ptexp-") as folder:
+        command = command_of(program, device, configuration, arguments, folder)
+        rows = rows_of(configuration, *count(command, Path(folder, "run.json"), arguments.timeout))
+    print(text_of(rows[0]), flush=True)
+    return rows
+
+
 def run(experiment, arguments):
     program = harness.find_program(arguments.ptexp)
     device = harness.find_device(program, arguments.device)
     chosen = configurations(arguments, device)
+    commands = {c.name: command_of(program, device, c, arguments, ".")[1:] for c in chosen}
     if arguments.list:
-        for configuration in chosen:
-            print(shlex.join(command_of(program, device, configuration, arguments, ".")))
+        print("\n".join(shlex.join([str(program), *command]) for command in commands.values()))
         return 0
     harness.check_gpu(experiment, device)
-    path = harness.table_path(experiment, device, arguments)
-    facts = {**harness.provenance(experiment, program, device, arguments), "date": harness.now(),
-             "configurations": {c.name: c.arguments for c in chosen}}
-    rows = []
-    for configuration in chosen:
-        with tempfile.TemporaryDirectory(prefix="ptexp-") as folder:
-            command = command_of(program, device, configuration, arguments, folder)
-            of_run = rows_of(configuration, *count(command, Path(folder, "run.json"),
-                                                   arguments.timeout))
-        rows += of_run
-        print(text_of(of_run[0]), flush=True)
-        if any(row["status"] == "measured" for row in rows):  # else the old table stays
-            harness.write_table(path, filled(rows), {**facts, "complete": False})
-    wrong = [row for row in rows if row["status"] != "measured"]
-    if not any(row["status"] == "measured" for row in rows):
-        did = "refused" if all(row["status"] == "refused" for row in rows) else "failed in"
-        raise HarnessError(f"ptexp {did} every configuration, the first with: "
-                           f"{rows[0]['message']}; no result was written")
-    failed = any(row["status"] == "failed" for row in wrong)
-    harness.write_table(path, filled(rows), {**facts, "complete": not failed})
-    print(f"\nwrote {path}")
-    return 1 if failed else 0
-
-
-def filled(rows):
-    """With the same columns in each."""
-    columns = max(rows, key=len)
-    return [{**dict.fromkeys([*columns, *row], ""), **row} for row in rows]
+    path, rows = measure_table(
+        experiment, arguments, program, device, kind="counted",
+        parts=[commands, *(scene_hash(c.arguments) for c in chosen)],
+        groups=((c.name, partial(measure, program, device, c, arguments)) for c in chosen))
+    print(f"\ntable: {path}")
+    return int(any(row["status"] == "failed" for row in rows or ()))
 
 
 EXPERIMENT = Experiment("counters", __doc__.splitlines()[0], configurations, None,

@@ -39,9 +39,10 @@ def measure_table(experiment, arguments, program, device, *, kind, parts, groups
                 "conclusions": experiment.conclude(measured, arguments)})
     rows = journal.measure_groups(kind, groups, save)
     measured = measured_of(rows)
+    complete = not any(row["status"] == "failed" for row in rows)
     if measured:
-        save(rows, complete=len(measured) == len(rows))
-    if len(measured) in (0, len(rows)):
+        save(rows, complete=complete)
+    if complete or not measured:
         journal.remove()
     if not measured:
         raise HarnessError(f"nothing was measured: {rows[0]['message']}; no result was written")

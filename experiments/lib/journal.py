@@ -68,7 +68,7 @@ class Journal:
         order. Those that the journal has, none of which failed, are not measured again; `save` is
         called with the rows so far after every group."""
         known = {event["name"]: event["rows"] for event in self.of(kind)
-                 if all(row["status"] == "measured" for row in event["rows"])}
+                 if all(row["status"] != "failed" for row in event["rows"])}
         rows = []
         for name, measure in groups:
             if name not in known:
