@@ -4,16 +4,16 @@
 A grid of scenes, image sizes, samples and depths, each rendered by both modes and by the default,
 which chooses one of them (--mode auto). `ratio` is the megakernel's time divided by the row's.
 `loss` says by how much of the better mode's time a row is slower than it. Other scenes than those
-that the rule of --mode auto was fitted on judge it: --scenes.
+that the rule of --mode auto was fitted on judge it: --scenes FILE...
 """
+import shlex
 import sys
-from pathlib import Path
 from statistics import mean
 
 from lib import harness
 from lib.harness import Configuration, Experiment, Plot
 from lib.ratios import ratio_labels, set_ratios
-from lib.scene_files import short_name
+from lib.scene_files import add_scene_files, scene_files, short_name
 
 SCENES = ["spheres", "rtow", "cornell", "boxes", "statue:100K", "dial:16:0:closed", "instances:1K",
           "fog"]
@@ -27,8 +27,9 @@ MODES = [BASE, "wavefront", "auto"]
 
 def add_arguments(parser):
     parser.set_defaults(repeat=5, rounds=1, warmup=1)
-    parser.add_argument("--scenes", nargs="+", metavar="SCENE", default=SCENES,
-                        help="built-in scenes and scene files [those of the rule]")
+    parser.add_argument("--built-in", nargs="*", metavar="SCENE", default=SCENES,
+                        help="built-in scenes [those of the rule]")
+    add_scene_files(parser)
     parser.add_argument("--modes", nargs="+", choices=MODES, default=MODES, help="[all]")
     for name, values in (("sizes", SIZES), ("samples", SAMPLES), ("depths", DEPTHS)):
         parser.add_argument(f"--{name}", nargs="+", metavar="N", type=int, default=values,
@@ -39,8 +40,7 @@ def cells(arguments):
     """(scene, size, samples, depth)"""
     if arguments.quick:
         return [(scene, 16, 2, 4) for scene in ("spheres", "boxes")]
-    scenes = [str(Path(scene).resolve()) if Path(scene).is_file() else scene
-              for scene in arguments.scenes]
+    scenes = [*arguments.built_in, *map(shlex.quote, scene_files(arguments))]
     return [(scene, size, samples, depth) for scene in scenes for depth in arguments.depths
             for size in arguments.sizes for samples in arguments.samples
             if size * size * samples <= PATHS_MAX]

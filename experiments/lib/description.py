@@ -43,10 +43,10 @@ class Configuration:
 @dataclass
 class Plot:
     """How plot.py draws the table. Rows with one label `panel` share axes; in `lines`, rows with
-    one label `series` share a line; the label `x` is the place on the axis, a number for lines, and
+    one label `series` share a line, in `points` a marker, beside the diagonal; the label `x` is the place on the axis, a number for lines, and
     nothing for a row that the picture leaves out. A bar of `stack` has a segment for each of the
     `parts` that its row has."""
-    kind: str  # "lines", "bars" or "stack"
+    kind: str  # "lines", "points", "bars" or "stack"
     title: str
     x_label: str = ""  # "": each panel's axis has the panel's name
     y_label: str = "kernel time [ms]"

@@ -95,6 +95,16 @@ def draw_lines(axes, rows, style):
         axes.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
 
 
+def draw_points(axes, rows, style):
+    """Both axes have the same unit; the diagonal is where they agree."""
+    draw_lines(axes, rows, style)
+    for bars in axes.containers:
+        bars.lines[0].set_linestyle("")
+    ends = axes.get_xlim()
+    axes.plot(ends, ends, color=COLOURS[4], linewidth=0.8)
+    axes.set_xlim(ends)
+
+
 def places_of(rows):
     return {row["name"]: -place for place, row in enumerate(rows)}  # the first one on top
 
@@ -152,7 +162,7 @@ def draw(path):
         raise ValueError("no row has its place in the picture yet: is the table complete?")
     style = {**facts["plot"], "series": list(in_groups(rows, "series"))}
     panels = in_groups(rows, "panel")
-    bars = max(map(len, panels.values())) if style["kind"] != "lines" else 0
+    bars = max(map(len, panels.values())) if style["kind"] not in ("lines", "points") else 0
     height = max(4.8, 0.3 * bars)
     if style["kind"] == "lines" and len(style["series"]) > len(COLOURS):
         height += 0.11 * len(style["series"])  # the legend is below
@@ -164,7 +174,7 @@ def draw(path):
     for axes in all_axes.flat[len(panels):]:
         axes.set_visible(False)
     for axes, (panel, members) in zip(all_axes.flat, panels.items()):
-        {"lines": draw_lines, "bars": draw_bars, "stack": draw_stack}[style["kind"]](
+        {"lines": draw_lines, "points": draw_points, "bars": draw_bars, "stack": draw_stack}[style["kind"]](
             axes, members, {**style, "x_label": style["x_label"] or panel})
         axes.set_title(panel, fontsize="medium")
         axes.grid(True, axis="both" if style["kind"] == "lines" else "x", alpha=0.3)

@@ -98,6 +98,8 @@ def sentences(table):
 
 def own_words(table):
     lines = table.facts.get("conclusions") or []
+    if "law" in table.facts:  # its conclusions are its meaning
+        return ""
     return ("<details><summary>What the experiment itself concludes</summary><ul>"
             + "".join(f"<li>{escape(line)}</li>" for line in lines) + "</ul></details>"
             ) if lines else ""

@@ -51,6 +51,9 @@ def draw_lines(rows, style, all_series, ends):
     parts = grid(x_scale, y_scale, style, places)
     if style.get("mark") is not None and ends[0] <= style["mark"] <= ends[1]:
         parts.append(svg.line(LEFT, y_scale(style["mark"]), RIGHT, y_scale(style["mark"]), "mark"))
+    if style["kind"] == "points":  # the diagonal, where both axes agree
+        low, high = max(places[0], ends[0]), min(places[-1], ends[1])
+        parts.append(svg.line(x_scale(low), y_scale(low), x_scale(high), y_scale(high), "mark"))
     unit, names = unit_of(style["y"]), []
     for series, members in in_groups(rows, "series").items():
         index = all_series.index(series)
@@ -61,9 +64,10 @@ def draw_lines(rows, style, all_series, ends):
         if not found:
             continue
         names.append((series, index))
-        track = " ".join(f"{svg.place(x_scale(x))},{svg.place(y_scale(value.middle))}"
-                         for x, value in found)
-        parts.append(f'<polyline class="line s{index % svg.SERIES}" points="{track}"/>')
+        if style["kind"] == "lines":
+            track = " ".join(f"{svg.place(x_scale(x))},{svg.place(y_scale(value.middle))}"
+                             for x, value in found)
+            parts.append(f'<polyline class="line s{index % svg.SERIES}" points="{track}"/>')
         name = series or style["y_label"]
         parts += [draw_point(x_scale(x), y_scale, value, f"{name}, {plain(x)} "
                              f"{style.get('x_label', '')}: {with_interval(value, unit, 4)}", index)

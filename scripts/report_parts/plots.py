@@ -24,7 +24,7 @@ def draw_panels(table, shared=None):
     """[(panel, height, content)]"""
     shared = shared or domains([table])
     series = list(in_groups(table.drawn, "series"))
-    draw = draw_lines if table.plot["kind"] == "lines" else draw_bars
+    draw = draw_lines if table.plot["kind"] in ("lines", "points") else draw_bars
     return [(panel, *draw(rows, style_of(table, panel), series, shared[panel]))
             for panel, rows in in_groups(table.drawn, "panel").items() if panel in shared]
 

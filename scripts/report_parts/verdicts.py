@@ -173,6 +173,8 @@ def meaning(table):
         found = list(about_scaling(table))
     elif is_processes(table):
         found = list(about_processes(table))
+    elif "law" in table.facts:
+        return [("", " ".join(table.facts["conclusions"]))]
     elif table.plot and table.plot.get("mark") is not None:
         found = list(about_mark(table))
     elif table.plot:
