@@ -156,6 +156,10 @@ def step(scene, name):
     return times[name]
 
 
+def step_time(scene, name):
+    return lambda: step(scene, name)
+
+
 def step_text(scene, name):
     return lambda: f"{step(scene, name):.1f}" if step(scene, name) else "no such kernel"
 
@@ -269,12 +273,12 @@ PLACES = [
     Place(MAIN, "{:.0f} million paths a second in the megakernel, {:.0f} million paths a second in the "
           "wavefront", [defaults(f"{STATUE} 1024x1024", mode, "mpaths_per_s")
                         for mode in ("megakernel", "wavefront")]),
-    Place(MAIN, "takes {} ms in the plain megakernel and {} ms in the block-local wavefront",
-          [step_text(DIAL, "megakernel"), step_text(DIAL, "megakernel at its best")]),
-    Place(MAIN, "it takes {} ms in a plain wavefront and {} ms in one with all its steps",
-          [step_text(DIAL, "split kernels"), step_text(DIAL, last(DIAL))]),
-    Place(MAIN, "the megakernel takes {} ms, the plain wavefront {} ms and the full one {} ms.",
-          [step_text(BALLS, name) for name in ("megakernel", "split kernels", last(BALLS))]),
+    Place(MAIN, "takes {:.1f} ms in the plain megakernel and {:.1f} ms in the block-local wavefront",
+          [step_time(DIAL, "megakernel"), step_time(DIAL, "megakernel at its best")]),
+    Place(MAIN, "it takes {:.1f} ms in a plain wavefront and {:.1f} ms in one with all its steps",
+          [step_time(DIAL, "split kernels"), step_time(DIAL, last(DIAL))]),
+    Place(MAIN, "the megakernel takes {:.1f} ms, the plain wavefront {:.1f} ms and the full one {:.1f} ms.",
+          [step_time(BALLS, name) for name in ("megakernel", "split kernels", last(BALLS))]),
     Place(TABLES, "(CUDA {}, driver {})", [toolkit, driver]),
     Place(TABLES, "600x300, 50 samples | 9 M | {:.2f} ms | {:.2f} ms",
           [target(mode, PAPER, 50) for mode in ("megakernel", "wavefront")]),

@@ -100,6 +100,8 @@ def draw_points(axes, rows, style):
     draw_lines(axes, rows, style)
     for bars in axes.containers:
         bars.lines[0].set_linestyle("")
+    axes.set_xscale("linear")
+    axes.set_yscale("linear")
     ends = axes.get_xlim()
     axes.plot(ends, ends, color=COLOURS[4], linewidth=0.8)
     axes.set_xlim(ends)

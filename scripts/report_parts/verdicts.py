@@ -174,7 +174,7 @@ def meaning(table):
     elif is_processes(table):
         found = list(about_processes(table))
     elif "law" in table.facts:
-        return [("", " ".join(table.facts["conclusions"]))]
+        return [("", line) for line in table.facts["conclusions"]]
     elif table.plot and table.plot.get("mark") is not None:
         found = list(about_mark(table))
     elif table.plot:

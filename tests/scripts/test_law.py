@@ -15,6 +15,10 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "experiments"))
 import law as experiment  # noqa: E402  pylint: disable=wrong-import-position
 from lib import harness, law  # noqa: E402  pylint: disable=wrong-import-position
+sys.path.insert(0, str(ROOT / "scripts"))
+from report_parts.plots import draw_panels  # noqa: E402  pylint: disable=wrong-import-position
+from report_parts.tables import read_table  # noqa: E402  pylint: disable=wrong-import-position
+from report_parts.verdicts import meaning  # noqa: E402  pylint: disable=wrong-import-position
 
 KNOWN = {"constant": math.log(1.3), "drain": 0.5, "shadow": -0.8, "sorted": -0.1}
 UNITS, BLOCK = 100, 640
@@ -109,6 +113,21 @@ class Law(unittest.TestCase):
         self.assertEqual(cells(pair("o", 512, 8, 4, 1, variant="auto")), [])
         self.assertEqual(cells(pair("o", 512, 8, 4, 1)[:1]), [])
 
+    def test_hits(self):
+        self.assertEqual(law.hits([0.05, -0.11, 0.1])[:2], (2, 3))
+
+    def test_families_count_alike(self):
+        nothing = {"constant": 1, "drain": 0, "shadow": 0, "sorted": 0}
+        many = [law.Cell(str(i), "many", False, "sizes", 4.0, nothing) for i in range(9)]
+        found = law.fit([law.Cell("x", "few", False, "sizes", 1.0, nothing), *many])
+        self.assertAlmostEqual(math.exp(found["constant"]), 2, 9)
+
+    def test_terms_of_a_row(self):
+        cell, = cells(pair("t", 2048, 8, 3, 1, is_sorted=True, finish_ms_median=2.5))
+        flying = law.SLOTS * UNITS * BLOCK
+        self.assertEqual(cell.terms, {"constant": 1, "drain": 0.75 * flying / (16 * 2048 * 2048), "shadow": 0.25,
+                                      "sorted": math.log(3)})
+
     def test_terms_that_no_cell_has_are_left_out(self):
         found = law.fit(cells([row for row in scenes() if not row["scene"].startswith(("b", "folder"))]))
         self.assertEqual(set(found), {"constant", "drain", "shadow"})
@@ -153,6 +172,15 @@ class Table(unittest.TestCase):
         self.assertEqual(facts["tables"]["sizes"]["commit"], "abc")
         self.assertAlmostEqual(facts["law"]["constant"]["factor"], 1.3, 1)
         self.assertTrue(facts["complete"])
+
+    def test_the_report_draws_it_and_says_it(self):
+        self.plant(scenes() + pair("loop", 512, 8, 4, 1, mega=LOOP))
+        self.run_law()
+        table = read_table(self.folder / "law.csv")
+        (_, _, content), = draw_panels(table)
+        self.assertEqual(content.count('class="marker"'), 60)  # none of the loop
+        self.assertEqual((content.count('class="mark"'), "<polyline" in content), (2, False))  # 1, diagonal
+        self.assertEqual([text for _, text in meaning(table)], table.facts["conclusions"])
 
     def test_new_tables_give_new_coefficients(self):
         factors = []

@@ -125,6 +125,10 @@ class Reproduce(unittest.TestCase):
             self.assertEqual(second.returncode, 0, second.stdout + second.stderr)
             self.assertRegex(second.stdout, r"goes on: \d\d of \d\d measurements are done already")
             self.assertIn("measured already by this program and command", second.stdout)
+            # Parts of one run may be calls of their own: nothing of them is measured again.
+            third = reproduce(*command[:-1], "depth,toggles")
+            self.assertEqual(third.returncode, 0, third.stdout + third.stderr)
+            self.assertEqual(third.stdout.count("measured already by this program and command"), 2)
 
 
 if __name__ == "__main__":
