@@ -41,6 +41,8 @@ class Claim:
 @lru_cache(maxsize=None)
 def rows_of(table):
     path = RESULTS / (f"{table}.csv" if "mitsuba" in table else f"{DEVICE}/{table}.csv")
+    if not path.is_file():
+        raise NumberError(f"{path} is missing")
     with open(path, newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
 

@@ -69,6 +69,10 @@ class PageNumbers(unittest.TestCase):
         for wrong in ("no such sentence {:.1f} ms", "the wavefront {}"):
             with self.assertRaises(listed.NumberError):
                 page_numbers.slots_of(text, page, [listed.Place(page, wrong, [lambda: 1])])
+        errors = []  # a place without its row keeps no other from being written
+        lacking = listed.Place(page, "the full one {:.1f} ms", [listed.cell("ladder", "nothing")])
+        self.assertEqual(page_numbers.slots_of(text, page, [lacking, *places], errors), slots)
+        self.assertIn("ladder.csv has 0 rows with {'name': 'nothing'}", errors[0])
 
     def test_a_sentence_that_the_tables_contradict_is_found(self):
         said = listed.Claim(listed.MAIN, "On a million triangles the wavefront is faster", lambda: False)
