@@ -5,6 +5,7 @@ import io
 import json
 import math
 import random
+import shutil
 import sys
 import tempfile
 import unittest
@@ -181,6 +182,19 @@ class Table(unittest.TestCase):
         self.assertEqual(content.count('class="marker"'), 60)  # none of the loop
         self.assertEqual((content.count('class="mark"'), "<polyline" in content), (2, False))  # 1, diagonal
         self.assertEqual([text for _, text in meaning(table)], table.facts["conclusions"])
+
+    def test_the_committed_law_is_that_of_the_committed_tables(self):
+        results = ROOT / "results" / "nvidia-h200"
+        for name in law.TABLES:
+            for ending in ("csv", "json"):
+                shutil.copy(results / f"{name}.{ending}", self.folder)
+        self.assertEqual(self.run_law()[0], 0)
+        for ending in ("csv", "json"):
+            texts = [(folder / f"law.{ending}").read_text(encoding="utf-8") for folder in (self.folder, results)]
+            if ending == "json":
+                texts = [{key: value for key, value in json.loads(text).items() if key != "command"}
+                         for text in texts]
+            self.assertEqual(texts[0], texts[1], "experiments/law.py --tables results/nvidia-h200 makes it anew")
 
     def test_new_tables_give_new_coefficients(self):
         factors = []
