@@ -9,7 +9,7 @@ MegakernelCuda::MegakernelCuda(const ExecutionPlan& plan, const SceneData& scene
   next_path_ = memory_.allocate<std::uint32_t>("counters", 1);
   if (plan_.megakernel == MegakernelKind::sort) {
     CudaLauncher& launcher = *this;
-    blocks_ = std::make_unique<BlockWavefronts>(launcher, memory_, traits_);
+    blocks_ = std::make_unique<BlockWavefronts>(launcher, memory_, traits_, plan_.path_bytes);
   }
 }
 
@@ -22,6 +22,7 @@ void MegakernelCuda::trace_batch(const SampleBuffer& batch) {
       if (plan_.megakernel == MegakernelKind::vote) return launch_phase_voting(source, batch);
       if (blocks_ != nullptr)
         return blocks_->trace(scene_, batch, source, path_settings_, StageId::megakernel);
+      if (plan_.path_bytes > 0) return launch_carrying(source, batch);
       launch_megakernel(in_global, 0, source, batch);
     } else {
       if constexpr (std::is_same_v<Source, PhiloxSource>) {

@@ -1,6 +1,6 @@
-// The megakernel's renderer. The loop has 15 variants (scene, branching, random numbers, scene
-// memory), so launching is split into files that compile side by side; the kernel that votes is
-// one, and so is that of the block-local wavefront.
+// The megakernel's renderer. The loop has many variants (scene, branching, random numbers, scene
+// memory, path bytes), so launching is split into files that compile side by side; the kernel that
+// votes is one, and so is that of the block-local wavefront.
 #pragma once
 
 #include "common/block_wavefront/block_wavefront_cuda.h"
@@ -27,6 +27,10 @@ class MegakernelCuda : public CudaRenderer {
   dim3 grid_size(Kernel kernel, dim3 block, std::size_t shared_bytes, const SampleBuffer& batch);
 
   void launch_phase_voting(const SamplerSource& source, const SampleBuffer& batch);
+  template <bool carries>
+  void launch_phase_voting_of(const SamplerSource& source, const SampleBuffer& batch);
+  /// launch_megakernel for paths that carry extra records (--path-bytes).
+  void launch_carrying(const SamplerSource& source, const SampleBuffer& batch);
 
   std::uint32_t* next_path_ = nullptr;
   std::unique_ptr<BlockWavefronts> blocks_;  ///< only with --kernel sort

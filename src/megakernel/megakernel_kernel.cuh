@@ -76,8 +76,12 @@ class ThreadWork {
   std::uint32_t next_ = 0, end_ = 0;
 };
 
+/// Most threads of a block: 64 registers for each, and one more for each word that it carries.
+template <class Source>
+inline constexpr int loop_block_max = 65536 / (64 + 4 * extra_records_of<Source>()) / 128 * 128;
+
 template <class Traits, Branching branching, SceneMemory memory, class Source>
-__global__ void __launch_bounds__(1024)
+__global__ void __launch_bounds__(loop_block_max<Source>)
     megakernel(const __grid_constant__ SceneStorage<memory> storage,
                const __grid_constant__ SampleBuffer batch,
                const __grid_constant__ WorkDivision division, Source source,

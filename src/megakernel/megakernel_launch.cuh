@@ -25,7 +25,7 @@ void MegakernelCuda::launch_megakernel(const SceneStorage<memory>& storage,
                                        const SampleBuffer& batch) {
   const dim3 block(plan_.block.x, plan_.block.y);
   const WorkDivision division{plan_.work, batch.width.divisor(), batch.height(), next_path_};
-  using Kernels = KernelSelection<true, number_source<Source>, memory, KernelBody::loop>;
+  using Kernels = KernelSelection<true, Source, memory, KernelBody::loop>;
   dispatch_traits(TraitsOf<Kernels>{}, traits_, [&](auto traits) {
     using Kind = decltype(traits);
     dispatch_branching<true, Kind, Source, memory, KernelBody::loop>(

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/film/film.h"
+#include "common/transport/extra_state.h"
 #include "common/transport/path_step.h"
 
 namespace pt {
@@ -26,6 +27,7 @@ PT_HD_IN_KERNEL void trace_paths(const Scene& scene, const Source& source,
   Color radiance(0.0f);
   Ray ray;
   Hit hit;
+  ExtraRegisters<extra_records_of<Source>()> extra(settings);
   const auto path_key = [&] { return path_hash<Traits>(scene, id); };
   PathRegisters<Traits, decltype(path_key)> registers{scene, path_key, radiance, ray};
   while (work.any(working)) {
@@ -35,6 +37,7 @@ PT_HD_IN_KERNEL void trace_paths(const Scene& scene, const Source& source,
       const Vec4 u = random.draw(scatter_block(path.rays));
       if (path.rays == 0) {
         ray = generate_camera_path(scene, random, id.pixel, u);
+        extra.begin(path.index);
       } else {
         const EagerShading policy = eager_shading<Traits>(u, random, path);
         if constexpr (branching == Branching::reduced) {
@@ -43,6 +46,7 @@ PT_HD_IN_KERNEL void trace_paths(const Scene& scene, const Source& source,
           shade_vertex<Traits>(scene, ray, hit, path, settings, policy, registers);
         }
         ended = !registers.alive;
+        if (!ended) extra.step();
       }
       if (!ended) {
         hit = next_hit<Traits>(scene, ray, path_key(), path);
@@ -52,7 +56,7 @@ PT_HD_IN_KERNEL void trace_paths(const Scene& scene, const Source& source,
           ended = true;
         }
       }
-      if (ended) samples.store(path, radiance);
+      if (ended) samples.store(path, extra.is_whole(path) ? radiance : broken_radiance());
     }
     if (work.any(ended)) {
       std::uint32_t path_index = path.index;

@@ -13,6 +13,7 @@
 #include "common/accel/trace_cuda/cwbvh_lane.cuh"
 #include "common/block_wavefront/path_query.cuh"
 #include "common/film/film.h"
+#include "common/transport/extra_state.h"
 #include "common/transport/path_step.h"
 
 namespace pt {
@@ -40,13 +41,13 @@ inline constexpr int phase_voting_stack_size =
 
 /// One lane's view. Traits: of triangles without masks and instances; Source: one whose streams are
 /// opened again for each draw; Work: see trace_path.h.
-template <class Traits, class Source, class Work>
+template <class Traits, class Source, class Work, bool carries = carries_extra<Source>>
 class PhaseVotingTracer {
  public:
   __device__ PhaseVotingTracer(const Scene& scene, const Source& source,
                                const SampleBuffer& samples, const PathSettings& settings,
                                Work& work, const SlotOrder& order, PhaseVotingWarp& warp,
-                               unsigned lane, uint2* stack)
+                               unsigned lane, const ExtraState& extra, uint2* stack)
       : scene_(scene),
         source_(source),
         samples_(samples),
@@ -54,6 +55,7 @@ class PhaseVotingTracer {
         work_(work),
         warp_(warp),
         lane_(lane),
+        extra_(extra),
         ray_(scene.triangles, order, stack),
         suspended_(stack + CwbvhLane<PathQuery>::stack_size) {}
 
@@ -173,6 +175,9 @@ class PhaseVotingTracer {
       set_lanes(ray, lanes_of(scene_).at(path.rays));
       ++path.rays;
       if (hit.is_miss()) {
+        if constexpr (carries) {
+          if (!extra_.is_whole(lane_, path)) radiance = broken_radiance();
+        }
         PathSample sample{samples_, radiance};
         shade_miss<Traits::lighting>(scene_, ray.direction, path, path_settings_, sample);
         ended = true;
@@ -210,8 +215,18 @@ class PhaseVotingTracer {
       shade_surface<Traits>(scene_, ray, hit, path, path_settings_,
                             eager_shading<Traits>(u, random, path), sink);
     }
+    if constexpr (carries) carry_extra(path, sink.state, radiance);
     store(path, radiance, ray.direction);
     state_ = sink.state;
+  }
+
+  /// What the path carries, when it has begun or been shaded.
+  __device__ void carry_extra(const PathState& path, State state, Color& radiance) {
+    if (path.rays == 0) return extra_.begin(lane_, path.index);
+    if (state == State::ray || state == State::shadow_then_ray) return extra_.step(lane_);
+    if (extra_.is_whole(lane_, path)) return;
+    radiance = broken_radiance();
+    samples_.store(path, radiance);
   }
 
   /// A sink (transport/path_step.h): rays into the lane's part of the warp's memory.
@@ -258,6 +273,7 @@ class PhaseVotingTracer {
   Work& work_;
   PhaseVotingWarp& warp_;
   unsigned lane_;
+  [[no_unique_address]] const ExtraStateIf<carries> extra_;
   CwbvhLane<PathQuery> ray_;
   volatile uint2* suspended_;
   State state_ = State::no_path;

@@ -81,6 +81,7 @@ PT_HD void start_path(const Scene& scene, const StageContext<Source>& context, s
   const Ray ray = begin_path(scene, id, random);
   context.source.close(id, random);
   context.pool.store_new_path(slot, ray, path_index);
+  if constexpr (carries_extra<Source>) context.pool.extra.begin(slot, path_index);
   if (context.pool.medium != nullptr) {
     PathState path;
     path.medium.id = static_cast<std::uint16_t>(scene.camera_medium_id);
@@ -139,6 +140,16 @@ struct PoolSink {
     samples.store(path, add_rounded(before, emitted));
   }
 };
+
+/// What a path carries, when it has been shaded: not before, since shading needs all registers.
+template <bool carries>
+PT_HD void carry_extra(const PathPool& pool, const SampleBuffer& samples, std::uint32_t slot,
+                       const PathState& path, const Next& next) {
+  if constexpr (carries) {
+    if (next.to == StageId::intersect) return pool.extra.step(slot);
+    if (!pool.extra.is_whole(slot, path)) samples.samples[path.index].radiance = broken_radiance();
+  }
+}
 
 template <class Source>
 struct GeneratePaths {
@@ -323,8 +334,8 @@ struct RouteHits {
 };
 
 /// `lighting`: full or sky; the others differ from sky only in whether lights have added to a
-/// sample.
-template <Lighting lighting>
+/// sample. `carries`: see carry_extra.
+template <Lighting lighting, bool carries>
 struct ShadeMiss {
   static constexpr StageId id = StageId::shade_miss;
   static constexpr SphereAccess spheres = SphereAccess::once;
@@ -341,6 +352,7 @@ struct ShadeMiss {
     ++path.rays;
     PoolSink<> sink{pool, samples, slot, has_lights};
     shade_miss<lighting>(scene, ray.direction, path, settings, sink);
+    carry_extra<carries>(pool, samples, slot, path, sink.next);
     return sink.next;
   }
 };
@@ -378,6 +390,7 @@ struct ShadeSurface {
       }
       source.close(id_of_path, random);
     }
+    carry_extra<carries_extra<Source>>(pool, samples, slot, path, sink.next);
     return sink.next;
   }
 };
@@ -403,6 +416,7 @@ struct ShadeMedium {
     shade_medium<Traits>(scene, ray, pool.load_hit(slot).t, path, settings,
                          eager_shading<Traits>(random, path), sink);
     source.close(id_of_path, random);
+    carry_extra<carries_extra<Source>>(pool, samples, slot, path, sink.next);
     return sink.next;
   }
 };
@@ -467,7 +481,8 @@ struct TraceShadowRays : ShadowRays {
 
 /// One thread follows a path for some rays and stores no hit in between. `bounce`: the fused stages
 /// of a wave. `finish`: the last of a batch, where waves would cost more than what they do. It
-/// always branches and traces shadow rays itself, as the serial mode does.
+/// always branches and traces shadow rays itself, as the serial mode does. Extra records stay in
+/// the pool: a thread that follows a path for several rays changes them there for each.
 template <class Traits, class Source>
 struct FollowPaths {
   static constexpr bool has_lights = Traits::has_lights;
@@ -495,6 +510,9 @@ struct FollowPaths {
     const PathId id_of_path = samples.id_of(path.index);
     auto random = source.open(id_of_path);
     if (starts_paths) ray = begin_path(scene, id_of_path, random);
+    if constexpr (carries_extra<Source>) {
+      if (starts_paths) pool.extra.begin(slot, path.index);
+    }
     set_lanes(ray, lanes_of(scene).at(path.rays));
     lanes_of(ray).count(as == StageId::bounce ? LanePoint::bounce : LanePoint::finish);
     Color radiance(0.0f);
@@ -508,9 +526,15 @@ struct FollowPaths {
     for (std::uint32_t traced = 0; alive && traced < rays_max; ++traced) {
       alive = follow_ray<Traits>(scene, ray, path, radiance, settings, random, key, flight);
       flight = {};
+      if constexpr (carries_extra<Source>) {
+        if (alive) pool.extra.step(slot);
+      }
     }
     source.close(id_of_path, random);
     if (!alive) {
+      if constexpr (carries_extra<Source>) {
+        if (!pool.extra.is_whole(slot, path)) radiance = broken_radiance();
+      }
       samples.store(path, radiance);
       return {free_slot};
     }
@@ -522,6 +546,7 @@ struct FollowPaths {
 };
 
 /// Puts the last paths of a batch where blocks follow them to their ends (block_wavefront.cuh).
+template <bool carries>
 struct HandOver {
   static constexpr StageId id = StageId::hand_over;
   static constexpr SphereAccess spheres = SphereAccess::once;
@@ -539,6 +564,7 @@ struct HandOver {
     if (paths.slots.media != nullptr) {
       store_wide(&paths.slots.media[place], load_wide(pool.at(pool.medium, slot)));
     }
+    if constexpr (carries) pool.extra.copy_to(slot, paths.slots.extra, place);
     return {free_slot};
   }
 };

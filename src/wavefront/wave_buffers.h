@@ -60,7 +60,8 @@ struct WavePolicy {
                .layout = plan.layout,
                .hits = !plan.fused,
                .media = traits.has_media,
-               .flights = traits.has_media && plan.wave_collisions > 0} {
+               .flights = traits.has_media && plan.wave_collisions > 0,
+               .extra_records = static_cast<std::uint32_t>(plan.path_bytes / path_bytes_step)} {
     if (plan.wave_collisions > 0)
       wave_collisions = static_cast<std::uint32_t>(plan.wave_collisions);
   }

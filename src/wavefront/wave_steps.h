@@ -94,7 +94,8 @@ void shade_misses(Executor& execute, const WaveBuffers& b, const StageContext<So
   if constexpr (branching == Branching::divergent) {
     constexpr StageId id = StageId::shade_miss;
     constexpr Lighting sky = Traits::lighting == Lighting::full ? Lighting::full : Lighting::sky;
-    execute.run(ShadeMiss<sky>{b.pool, context.samples, context.settings, Traits::has_lights},
+    execute.run(ShadeMiss<sky, carries_extra<Source>>{b.pool, context.samples, context.settings,
+                                                      Traits::has_lights},
                 b.stage_queues(id, b.waiting(id), b.pool.tag));
   }
 }

@@ -27,8 +27,13 @@ void WavefrontCuda::begin_wave() {
 void WavefrontCuda::finish_in_blocks(const SampleBuffer& batch) {
   if (host_counters_->finish == 0) return;
   const BegunPaths paths = blocks_->place(host_counters_->finish);
-  run(HandOver{buffers_.pool, batch, paths},
-      buffers_.stage_queues(StageId::hand_over, &buffers_.counters->finish, nullptr));
+  const StageQueues queues =
+      buffers_.stage_queues(StageId::hand_over, &buffers_.counters->finish, nullptr);
+  if (has_carrying_kernels && plan_.path_bytes > 0) {
+    run(HandOver<has_carrying_kernels>{buffers_.pool, batch, paths}, queues);
+  } else {
+    run(HandOver<false>{buffers_.pool, batch, paths}, queues);
+  }
   blocks_->finish(scene_, batch, sampler_source_of(plan_), path_settings_, StageId::finish, paths);
 }
 

@@ -27,7 +27,7 @@ WavefrontCuda::WavefrontCuda(const ExecutionPlan& plan, const SceneData& scene, 
   if (plan_.finishes_in_blocks) {
     const std::uint64_t most = std::min<std::uint64_t>(batch_paths(), finish_paths_);
     CudaLauncher& launcher = *this;
-    blocks_ = std::make_unique<BlockWavefronts>(launcher, memory_, traits_,
+    blocks_ = std::make_unique<BlockWavefronts>(launcher, memory_, traits_, plan_.path_bytes,
                                                 static_cast<std::uint32_t>(most));
     finish_paths_ = std::min(finish_paths_, blocks_->capacity());
   }
@@ -127,6 +127,9 @@ void WavefrontCuda::with_context(const SampleBuffer& batch, Function&& function)
   with_random_source([&](const auto& source) {
     using Source = std::remove_cvref_t<decltype(source)>;
     if constexpr (std::is_same_v<Source, SamplerSource>) {
+      using Carrying = CarryingSource<>;
+      if (plan_.path_bytes > 0)
+        return function(WaveKinds<Carrying>{}, context_of(batch, Carrying{source}));
       if (traits_.has_media) return function(WaveKinds<Source, true>{}, context_of(batch, source));
     }
     function(WaveKinds<Source>{}, context_of(batch, source));

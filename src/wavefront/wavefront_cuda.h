@@ -16,8 +16,7 @@ struct WaveKernels {
   static constexpr bool has(const SceneTraits& scene) {
     using enum KernelBody;
     return scene.has_media == has_media &&
-           KernelSelection<true, number_source<Source>, SceneMemory::global, stages, warps,
-                           fused>::has(scene);
+           KernelSelection<true, Source, SceneMemory::global, stages, warps, fused>::has(scene);
   }
 };
 template <class Source, bool has_media = false>

@@ -25,7 +25,7 @@ template <class T, SceneMemory memory>
 inline constexpr bool is_in_table<TraceShadowRays<T>, memory> = traces_rays(T::value(), memory);
 template <class T, class Source, SceneMemory memory>
 inline constexpr bool is_in_table<FollowPaths<T, Source>, memory> =
-    has_kernel({true, KernelBody::fused, T::value(), number_source<Source>, memory});
+    KernelSelection<true, Source, memory, KernelBody::fused>::has(T::value());
 
 template <class Stage>
 void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {

@@ -43,4 +43,11 @@ using SamplerContext = StageContext<SamplerSource>;
 template void WavefrontCuda::enqueue_wave_of<WaveKinds<SamplerSource>>(const SamplerContext&, bool);
 template void WavefrontCuda::enqueue_finish_of<WaveKinds<SamplerSource>>(const SamplerContext&);
 
+// With --path-bytes; of no scene in a build without.
+using CarryingContext = StageContext<CarryingSource<>>;
+using CarryingKinds = WaveKinds<CarryingSource<>>;
+
+template void WavefrontCuda::enqueue_wave_of<CarryingKinds>(const CarryingContext&, bool);
+template void WavefrontCuda::enqueue_finish_of<CarryingKinds>(const CarryingContext&);
+
 }  // namespace pt

@@ -32,7 +32,7 @@ class SortedPaths {
   SortedPaths(const SceneData& scene, const Options& options)
       : scene_(host_view(scene, options.width, options.height)),
         source_(sampler_source_of(options)),
-        path_settings_(path_settings_of(options)) {
+        path_settings_(path_settings_of(options, options.path_bytes)) {
     scene_.mask_seed = mask_seed(options.seed);
     const auto width = static_cast<std::uint32_t>(options.width);
     const auto height = static_cast<std::uint32_t>(options.height);
@@ -57,6 +57,7 @@ class SortedPaths {
     std::vector<std::vector<std::uint64_t>> arrays;
     PathPool::Fields fields{true, false, false, scene_.light_selector.has_tree()};
     fields.media = Traits::has_media;
+    fields.extra_records = path_settings_.extra_records;
     pool.allocate_arrays(fields, [&]<class T>(T*, std::uint64_t count) {
       arrays.emplace_back(count * sizeof(T) / sizeof(std::uint64_t) + 1);
       return reinterpret_cast<T*>(arrays.back().data());
@@ -67,7 +68,7 @@ class SortedPaths {
                                                 static_cast<std::uint32_t>(left.size()), blocks);
     ASSERT_LE(begun.per_block, begun.slots.per_block);
     for (std::uint32_t rank = 0; rank < left.size(); ++rank)
-      HandOver{pool, batch_, begun}(scene_, left[rank], rank);
+      HandOver<true>{pool, batch_, begun}(scene_, left[rank], rank);
     run<Traits>(blocks, 0, slots_per_thread, begun);
   }
 
@@ -77,6 +78,7 @@ class SortedPaths {
     for (std::uint32_t path_index = 0; path_index < batch_.path_count; ++path_index) {
       const Sample expected = follow<Traits>(path_index), found = samples_[path_index];
       ASSERT_EQ(found.rays, expected.rays) << "path " << path_index;
+      ASSERT_TRUE(is_finite(expected.radiance)) << "path " << path_index;
       ASSERT_EQ(std::memcmp(&found, &expected, sizeof found), 0) << "path " << path_index;
       lit += is_black(expected.radiance) ? 0 : 1;
     }
@@ -114,7 +116,9 @@ class SortedPaths {
     slots_.resize(std::size_t{per_block} * blocks);
     media_.assign(Traits::has_media ? slots_.size() : 0, PathRecord{-1, -1, -1, 0x12345678});
     std::memset(static_cast<void*>(slots_.data()), 0xa5, slots_.size() * sizeof(PathSlot));
-    return {slots_.data(), Traits::has_media ? media_.data() : nullptr, per_block};
+    extra_.resize(slots_.size() * path_settings_.extra_records);
+    return {slots_.data(), Traits::has_media ? media_.data() : nullptr, per_block,
+            ExtraState::by_place(extra_.data(), path_settings_.extra_records)};
   }
 
   /// Puts the paths that `rays` rays do not end into slots of the pool, and returns these.
@@ -128,14 +132,16 @@ class SortedPaths {
       path.index = path_index;
       Ray ray = begin_path(scene_, id, random);
       Color radiance(0.0f);
+      const std::uint32_t slot = batch_.path_count - 1 - path_index;
+      pool.extra.begin(slot, path_index);
       bool alive = true;
       for (int i = 0; i < rays && alive; ++i) {
         alive = follow_ray<Traits>(scene_, ray, path, radiance, path_settings_, random,
                                    path_hash<Traits>(scene_, id));
+        if (alive) pool.extra.step(slot);
       }
       batch_.store(path, radiance);
       if (!alive) continue;
-      const std::uint32_t slot = batch_.path_count - 1 - path_index;
       if (rays == 0) {
         pool.store_new_path(slot, ray, path_index);
       } else {
@@ -166,6 +172,7 @@ class SortedPaths {
   SampleBuffer batch_;
   std::vector<PathSlot> slots_;
   std::vector<PathRecord> media_;
+  std::vector<ExtraRecord> extra_;
 };
 
 Options small_image() {
@@ -183,6 +190,7 @@ INSTANTIATE_TEST_SUITE_P(
                     ImageKind{"many_kinds", {{"scene", "dial:14:0:closed"}}},
                     ImageKind{"long_paths", {{"scene", "dial:6:0:closed"}, {"max-depth", "30"}}},
                     ImageKind{"roulette", {{"scene", "boxes"}, {"rr", "2"}, {"max-depth", "20"}}},
+                    ImageKind{"path_bytes", {{"scene", "boxes"}, {"path-bytes", "80"}}},
                     ImageKind{"light_tree", {{"scene", "boxes"}, {"light-selection", "tree"}}},
                     ImageKind{"no_light_sampling", {{"scene", "boxes"}, {"nee", "off"}}},
                     ImageKind{"camera_rays", {{"scene", "boxes"}, {"max-depth", "1"}}},
@@ -233,8 +241,9 @@ TEST(SortingOfMasks, FinishesWhatWavesHaveLeftOver) {
 
 TEST(SortingOfMedia, GivesEachPathWhatItGetsAlone) {
   using Traits = MediaTraits;
-  const Options options =
-      with(small_image(), {{"width", "31"}, {"height", "23"}, {"max-depth", "12"}, {"rr", "4"}});
+  const Options options = with(
+      small_image(),
+      {{"width", "31"}, {"height", "23"}, {"max-depth", "12"}, {"rr", "4"}, {"path-bytes", "32"}});
   SceneData scene = filled_glasses();
   prepare_scene(scene, options);
   ASSERT_TRUE(scene.traits.has_media);

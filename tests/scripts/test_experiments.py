@@ -2,6 +2,7 @@
 
 The environment variable PTEXP names the executable (build/release/src/ptexp).
 """
+import argparse
 import contextlib
 import csv
 import importlib
@@ -336,6 +337,65 @@ class Experiments(unittest.TestCase):
         for script in SCRIPTS:
             self.assertIn(f"`{script}.py`", readme)
             self.assertTrue(os.access(ROOT / "experiments" / f"{script}.py", os.X_OK), script)
+
+
+class PathState(unittest.TestCase):
+    def setUp(self):
+        self.path_state = importlib.import_module("path_state")
+
+    def configurations(self, kind, *options):
+        parser = argparse.ArgumentParser()
+        self.path_state.add_arguments(parser)
+        arguments = parser.parse_args(options)
+        arguments.quick = False
+        return self.path_state.configurations(arguments, types.SimpleNamespace(kind=kind))
+
+    def rows(self, **times):
+        """{mode: times with 0, 64 and 256 bytes}"""
+        return [{"panel": "statue", "series": mode.replace("_", ", "), "x": str(size), "mode": mode,
+                 "rays": "1000000", "kernel_ms_median": str(ms), "kernel_ms_min": str(ms - 0.1),
+                 "kernel_ms_max": str(ms + 0.1), "kernel_ms_low": str(ms - 0.1),
+                 "kernel_ms_high": str(ms + 0.1)}
+                for mode, values in times.items() for size, ms in zip((0, 64, 256), values)]
+
+    def test_all_promise_the_image_without_more_state(self):
+        for kind, modes in (("cpu", 2), ("cuda", 4)):
+            found = self.configurations(kind, "--bytes", "0", "48")
+            self.assertEqual(len(found), 3 * modes * 2)
+            self.assertEqual({one.same_image for one in found},
+                             {"statue:1M", "dial:16:0:closed", "cornell"})
+            for one in found:
+                self.assertIn(f"--path-bytes {one.labels['x']}", one.arguments)
+                self.assertNotIn("--counters", one.arguments)
+        self.assertIn("--counters", self.configurations("cuda", "--counters")[0].arguments)
+        self.assertNotIn("--counters", self.configurations("cpu", "--counters")[0].arguments)
+
+    def test_from_which_size_on_another_mode_is_the_fastest(self):
+        turn = self.path_state.turn_of
+        self.assertEqual(turn(self.rows(megakernel=(1, 3, 8), wavefront=(2, 2.5, 4))),
+                         "fastest with 0 bytes: megakernel; from 64 bytes on wavefront")
+        self.assertEqual(turn(self.rows(megakernel=(1, 2, 3), wavefront=(2, 3, 4))),
+                         "fastest with 0 bytes: megakernel; the same to 256 bytes")
+        # Not where the intervals overlap.
+        self.assertEqual(turn(self.rows(megakernel=(1, 2.55, 3), wavefront=(2, 2.5, 3.05))),
+                         "fastest with 0 bytes: megakernel; the same to 256 bytes")
+
+    def test_conclusions_say_what_bytes_cost(self):
+        lines = self.path_state.conclude(self.rows(wavefront=(2, 3, 6)), None)
+        self.assertEqual(lines[1], "statue, wavefront: 256 more bytes are 3.00 times as slow as "
+                                   "without, 4.00 ns a ray")
+
+    def test_kernels_and_counters_become_columns(self):
+        row, = self.rows(wavefront=(1,))
+        row.update(kernels="generate:32:0:0:256:1;shade_surface:96:16:1024:640:0.31",
+                   counted_rays="10", counted_l2_read_bytes="1000", counted_l2_written_bytes="500",
+                   counted_predicted_read_bytes="700", counted_predicted_written_bytes="300")
+        self.path_state.finish([row], None)
+        self.assertEqual([row[name] for name in self.path_state.OWN], ["96", "16", "100", "150"])
+        of_cpu, = self.rows(wavefront=(1,))
+        of_cpu.update(dict.fromkeys(self.path_state.OWN, ""))
+        self.path_state.finish([of_cpu], None)
+        self.assertEqual([of_cpu[name] for name in self.path_state.OWN], ["", "", "", ""])
 
 
 class Dial(unittest.TestCase):

@@ -8,7 +8,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SRC = ROOT / "src"
 
-FILES_MAX = 623
+FILES_MAX = 625
 LINES_MAX = 80_800
 FOLDER_FILES_MAX = 25
 MEDIAN_LINES_MIN = 95

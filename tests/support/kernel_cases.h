@@ -63,6 +63,10 @@ void for_each_kernel(bool on_cuda, Function&& function) {
   };
   for (const KernelRow& row : kernel_table) {
     if (row.on_cuda != on_cuda) continue;
+    int records = 0;
+    while (records <= 16 && !row.extra.contains(ExtraRecords{records})) ++records;
+    if (records > 16) continue;  // not in this build
+    const std::string path_bytes = std::to_string(records * path_bytes_step);
     each(row.bodies, 7, [&](KernelBody body) {
       each(row.accels, 5, [&](Accel accel) {
         if (accel == Accel::cwbvh_avx2 && !has_avx2()) return;
@@ -77,6 +81,7 @@ void for_each_kernel(bool on_cuda, Function&& function) {
                                  {"rng", source == NumberSource::xorwow ? "xorwow" : "philox"},
                                  {"scene-memory", to_string(memory)},
                                  {"branching", to_string(branching)},
+                                 {"path-bytes", path_bytes},
                                  {"width", "16"},
                                  {"height", "12"},
                                  {"spp", "2"},

@@ -19,6 +19,8 @@ std::vector<Fields> all_fields(PoolLayout layout) {
   std::vector<Fields> all;
   for (int bits = 0; bits < 16; ++bits) {
     all.push_back({(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0, layout});
+    constexpr std::uint32_t records[] = {0, 1, 5, 16};
+    all.back().extra_records = records[bits / 2 % 4];
   }
   return all;
 }
@@ -70,6 +72,8 @@ void store(const PathPool& pool, const Fields& fields, std::uint32_t slot) {
     pool.store_shadow_ray(slot, shadow, path);
     pool.store_shadow_radiance(slot, shadow.radiance, path);
   }
+  pool.extra.begin(slot, path.index);
+  for (std::uint32_t ray = 1; ray < path.rays; ++ray) pool.extra.step(slot);
   if (fields.tags) pool.tag[slot] = static_cast<StageId>(slot % 5);
   if (fields.tags && fields.lights) pool.shadow_tag[slot] = static_cast<StageId>(slot % 3);
 }
@@ -88,6 +92,8 @@ void expect_stored(const PathPool& pool, const Fields& fields, std::uint32_t slo
   if (fields.receivers) {
     EXPECT_EQ(path.receiver.bits, expected.receiver.bits);
   }
+  EXPECT_EQ(pool.extra.count, fields.extra_records);
+  EXPECT_TRUE(pool.extra.is_whole(slot, expected));
   const Hit hit = pool.load_hit(slot);
   EXPECT_EQ(hit.t, static_cast<float>(slot) / 2);
   EXPECT_EQ(hit.primitive, slot + 100);
@@ -149,6 +155,28 @@ TEST_P(PathPoolOf, EveryRecordIsAligned) {
       expect_aligned(pool.shadow_origin), expect_aligned(pool.shadow_direction);
       expect_aligned(pool.shadow_radiance);
     }
+  }
+}
+
+// Two records of a path share a sector, as the halves of a ray do.
+TEST_P(PathPoolOf, ExtraRecordsLieAsTheOthers) {
+  for (const std::uint32_t records : {1u, 6u, 15u}) {
+    Fields fields{true, false, false, false, GetParam()};
+    fields.extra_records = records;
+    PoolMemory memory;
+    const PathPool pool = memory.allocate(fields, 5);
+    const std::ptrdiff_t in_row = GetParam() == PoolLayout::soa       ? 1
+                                  : GetParam() == PoolLayout::sectors ? 2
+                                                                      : 16;
+    for (std::uint32_t k = 1; k < records; ++k) {
+      const bool is_next = pool.extra.at(3, k) - pool.extra.at(3, k - 1) == 1;
+      EXPECT_EQ(is_next, k % in_row != 0) << k;
+      EXPECT_EQ(reinterpret_cast<std::uintptr_t>(pool.extra.at(3, k)) % 16, 0u);
+    }
+    Fields none = fields;
+    none.extra_records = 0;
+    const std::uint32_t whole = GetParam() == PoolLayout::sectors ? (records + 1) / 2 * 2 : records;
+    EXPECT_EQ(PathPool::bytes_per_slot(fields), PathPool::bytes_per_slot(none) + 16 * whole);
   }
 }
 

@@ -52,6 +52,22 @@ TEST(StageBytes, FirstWaveByHand) {
   expect_bytes(predict("megakernel"), 0, 0);
 }
 
+// Begun with the path, loaded for each ray, and stored where the path goes on.
+TEST(StageBytes, ExtraRecords) {
+  WaveLayout more = usual();
+  more.fields.extra_records = 4;
+  const auto expect_more = [&](const char* kernel, double read, double written) {
+    const PredictedBytes without = predict_bytes(kernel, first_wave(), usual());
+    expect_bytes(predict_bytes(kernel, first_wave(), more), without.read + read,
+                 without.written + written);
+  };
+  expect_more("generate", 0, 100 * 64);
+  expect_more("intersect", 0, 0);
+  expect_more("shade_miss", 40 * 64, 0);
+  expect_more("shade_surface", 60 * 64, 40 * 64);
+  expect_more("shadow", 0, 0);
+}
+
 TEST(StageBytes, OldPathsHaveAThroughput) {
   WaveFlow flow = first_wave();
   flow.generated = 25;
@@ -184,23 +200,26 @@ TEST(StageBytes, GenerateWritesThePredictedRecords) {
   const SceneData data = make_scene_for(options, choose_device({DeviceChoice::Kind::cpu, 0}));
   const Scene scene = host_view(data, options.width, options.height);
   constexpr std::uint32_t n = 32;
-  const PathPool::Fields fields = {true, false, false, false};
-  const MarkedPool marked(n, fields);
-  std::vector<Sample> samples(n);
-  std::vector<std::uint32_t> queue(n);
-  WaveCounters counters{};
-  counters.generate = counters.intersect = n;
-  const SampleBuffer buffer(samples.data(), Window{0, 0, 8, 4}, 0, 1);
-  const GeneratePaths<PhiloxSource> stage{
-      {marked.pool, buffer, PhiloxSource{1}, &counters, queue.data(), {}, {}}, true};
-  for (std::uint32_t slot = 0; slot < n; ++slot) stage(scene, slot, slot);
-  WaveFlow flow;
-  flow.generated = flow.rays = n;
-  WaveLayout layout;
-  layout.fields = fields;
-  const double beside = n * (sizeof(Sample) + sizeof(std::uint32_t));
-  EXPECT_EQ(static_cast<double>(marked.written_bytes()) + beside,
-            predict_bytes("generate", flow, layout).written);
+  for (const std::uint32_t extra_records : {0u, 4u}) {
+    PathPool::Fields fields = {true, false, false, false};
+    fields.extra_records = extra_records;
+    const MarkedPool marked(n, fields);
+    std::vector<Sample> samples(n);
+    std::vector<std::uint32_t> queue(n);
+    WaveCounters counters{};
+    counters.generate = counters.intersect = n;
+    const SampleBuffer buffer(samples.data(), Window{0, 0, 8, 4}, 0, 1);
+    const GeneratePaths<PhiloxSource> stage{
+        {marked.pool, buffer, PhiloxSource{1}, &counters, queue.data(), {}, {}}, true};
+    for (std::uint32_t slot = 0; slot < n; ++slot) stage(scene, slot, slot);
+    WaveFlow flow;
+    flow.generated = flow.rays = n;
+    WaveLayout layout;
+    layout.fields = fields;
+    const double beside = n * (sizeof(Sample) + sizeof(std::uint32_t));
+    EXPECT_EQ(static_cast<double>(marked.written_bytes()) + beside,
+              predict_bytes("generate", flow, layout).written);
+  }
 }
 
 }  // namespace

@@ -140,6 +140,19 @@ OptionEntry compaction_entry() {
   return entry;
 }
 
+OptionEntry path_bytes_entry() {
+  const auto parse = [](const std::string& name, const std::string& text) {
+    const auto bytes = static_cast<int>(parse_integer(name, text, 0, path_bytes_max));
+    if (bytes % path_bytes_step != 0)
+      refuse_value(
+          name, text,
+          fmt::format("expected a multiple of {} up to {}", path_bytes_step, path_bytes_max));
+    return bytes;
+  };
+  return value("path-bytes", OptionForm::number, "N", &Options::path_bytes, parse,
+               [](int x) { return std::to_string(x); });
+}
+
 /// Adds a definition to those given before.
 OptionEntry define_entry() {
   OptionEntry entry{.name = "define", .form = OptionForm::list, .placeholder = "NAME=VALUE"};
@@ -326,6 +339,12 @@ void add_execution(std::vector<OptionEntry>& list) {
            "--max-depth rays it is nearly the megakernel")
       .expert()
       .only(wavefront, any_device)
+      .add(path_bytes_entry(),
+           "More state of every path, a multiple of 16 to 256, that each\n"
+           "ray reads, changes and stores where the path's state is; it\n"
+           "stands for spectra, derivatives or guiding. On CUDA only in a\n"
+           "build with PTEXP_PATH_STATE, see --list-kernels")
+      .expert()
       .add(on_off("regenerate", &Options::regenerate),
            "wavefront: a path that ends gives its slot to a new one;\n"
            "off: the pool runs empty before it is filled again")

@@ -248,8 +248,8 @@ PT_NOINLINE inline Color shadow_passes_out_of_line(const Scene& scene, std::uint
 }
 
 /// One thread's view. Traits: as for BlockWavefrontLane; Source: one whose streams are opened again
-/// for each draw.
-template <class Traits, class Source, class Memory>
+/// for each draw; `carries`: paths carry extra records.
+template <class Traits, class Source, class Memory, bool carries = carries_extra<Source>>
 class BlockWavefront {
  public:
   __device__ BlockWavefront(const Scene& scene, const Source& source, const SampleBuffer& samples,
@@ -264,6 +264,7 @@ class BlockWavefront {
         warp_(memory.tracing.warps[threadIdx.x / 32]),
         slots_(slots.paths),
         media_(slots.media),
+        extra_(slots.extra),
         rays_{memory, slots.paths, scene, samples},
         stack_(stack) {}
 
@@ -324,6 +325,7 @@ class BlockWavefront {
       if (!exists) continue;
       memory_.ray(memory_.start_ray + i) = static_cast<std::uint16_t>(2 * slot);
       start_path(slots_[slot], path_index);
+      if constexpr (carries) extra_.begin(slot, path_index);
     }
     const bool goes_on = !memory_.has_ended;
     __syncthreads();
@@ -481,6 +483,9 @@ class BlockWavefront {
     if constexpr (Traits::has_media) fly(slot_index, ray, path, hit);
     ++path.rays;
     if (hit.is_miss()) {
+      if constexpr (carries) {
+        if (!extra_.is_whole(slot_index, path)) sample.radiance = broken_radiance();
+      }
       shade_miss<Traits::lighting>(scene_, ray.direction, path, path_settings_, sample);
       state = Path::none;
       return;
@@ -494,18 +499,27 @@ class BlockWavefront {
         auto random = source_.open(samples_.id_of(path.index));
         const EagerShading policy = eager_shading<Traits>(random, path);
         shade_medium<Shading>(scene_, ray, hit.t, path, path_settings_, policy, sink);
-        return wait(sink, state, shadow);
+        return wait(slot_index, path, sink, state, shadow);
       }
     }
     SlotSink<true, Traits::has_media> sink{samples_, slot, medium};
     const StreamingShading policy{source_, samples_, path, sink};
     shade_surface<Shading>(scene_, ray, hit, path, path_settings_, policy, sink);
-    wait(sink, state, shadow);
+    wait(slot_index, path, sink, state, shadow);
   }
 
-  /// What the sink leaves a path to wait for.
+  /// What the sink leaves a path to wait for, which carries its records there.
   template <class Sink>
-  __device__ static void wait(const Sink& sink, Path& state, Shadow& shadow) {
+  __device__ void wait(std::uint32_t slot, const PathState& path, const Sink& sink, Path& state,
+                       Shadow& shadow) const {
+    if constexpr (carries) {
+      if (sink.alive) {
+        extra_.step(slot);
+      } else if (!extra_.is_whole(slot, path)) {
+        slots_[slot].add_radiance(broken_radiance());
+        if (!sink.casts) samples_.store(path, broken_radiance());
+      }
+    }
     state = sink.alive ? Path::ray : sink.casts ? Path::ended : Path::none;
     shadow = sink.casts ? Shadow::ray : Shadow::none;
   }
@@ -541,6 +555,7 @@ class BlockWavefront {
   PersistentWarp<Lane>& warp_;
   PathSlot* slots_;
   PathRecord* media_;
+  [[no_unique_address]] const ExtraStateIf<carries> extra_;
   const BlockRays<Traits, Memory> rays_;
   uint2* stack_;
 };

@@ -4,7 +4,8 @@ namespace pt {
 namespace {
 
 /// Scenes with masks or media are `mixed`, too; here they have no instances.
-BlockWavefrontCode code_for(const SceneTraits& traits) {
+BlockWavefrontCode code_for(const SceneTraits& traits, int path_bytes) {
+  if (path_bytes > 0) return code_that_carries();
   if (traits.has_media) return code_for_media();
   if (traits.has_masks) return code_for_masks();
   return traits.geometry == Geometry::mixed ? code_for_instances() : code_for_triangles();
@@ -13,8 +14,8 @@ BlockWavefrontCode code_for(const SceneTraits& traits) {
 }  // namespace
 
 BlockWavefronts::BlockWavefronts(CudaLauncher& launcher, CudaMemory& memory,
-                                 const SceneTraits& traits, std::uint32_t paths_max)
-    : launcher_(launcher), code_(code_for(traits)) {
+                                 const SceneTraits& traits, int path_bytes, std::uint32_t paths_max)
+    : launcher_(launcher), code_(code_for(traits, path_bytes)) {
   const std::size_t room = launcher_.properties_.sharedMemPerBlockOptin;
   while (slots_per_thread_ > block_wavefront_slots_least && code_.bytes(slots_per_thread_) > room)
     --slots_per_thread_;
@@ -27,6 +28,11 @@ BlockWavefronts::BlockWavefronts(CudaLauncher& launcher, CudaMemory& memory,
   slots_.per_block = static_cast<std::uint32_t>(block_wavefront_threads * slots_per_thread_);
   slots_.paths = memory.allocate<PathSlot>("paths", capacity());
   if (traits.has_media) slots_.media = memory.allocate<PathRecord>("paths", capacity());
+  if (path_bytes > 0) {
+    const auto records = static_cast<std::uint32_t>(path_bytes / extra_record_bytes);
+    const std::uint64_t all = std::uint64_t{capacity()} * records;
+    slots_.extra = ExtraState::by_place(memory.allocate<ExtraRecord>("paths", all), records);
+  }
   next_path_ = memory.allocate<std::uint32_t>("counters", 1);
 }
 

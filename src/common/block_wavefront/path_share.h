@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/block_wavefront/path_slot.h"
+#include "common/transport/extra_state.h"
 
 namespace pt {
 
@@ -17,11 +18,14 @@ struct BlockSlots {
   PathSlot* paths;
   PathRecord* media;  ///< of the paths (pack_medium); only in scenes with media
   std::uint32_t per_block;
+  ExtraState extra;  ///< of the paths, side by side; only with --path-bytes
 
   /// Those of one block.
   PT_HD BlockSlots of_block(std::uint32_t block) const {
     const std::size_t first = std::size_t{block} * per_block;
-    return {paths + first, media != nullptr ? media + first : nullptr, per_block};
+    ExtraState own = extra;
+    own.records += first * own.stride;
+    return {paths + first, media != nullptr ? media + first : nullptr, per_block, own};
   }
 };
 

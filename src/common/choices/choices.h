@@ -6,6 +6,9 @@
 
 namespace pt {
 
+/// What --path-bytes is a multiple of, and at most.
+inline constexpr int path_bytes_step = 16, path_bytes_max = 256;
+
 /// Random numbers of a path, which depend on (seed, pixel, sample, block) alone.
 enum class SamplerKind : std::uint8_t { independent, stratified, sobol };
 

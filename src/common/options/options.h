@@ -155,6 +155,7 @@ struct ExecutionSettings {
   /// Pools and samples take no more than the free memory / 2^this. Not an option of the command
   /// line: a device that has run out of memory is tried again with less.
   int memory_halvings = 0;
+  int path_bytes = 0;  ///< more state of each path, a multiple of path_bytes_step
 };
 
 /// Everything that a user chooses.

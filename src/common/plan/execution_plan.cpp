@@ -61,12 +61,25 @@ class Planner {
     if (device_.is_cuda && is_specialized()) choose_scene_memory();
     if (plan_.mode == Mode::wavefront) choose_waves();
     if (!is_specialized()) choose_lights();
+    if (plan_.path_bytes > 0) decide("path-bytes", std::to_string(plan_.path_bytes), state_place());
     check_plan(plan_, o_, scene_, device_);
     return std::move(plan_);
   }
 
  private:
   bool is_specialized() const { return plan_.kernel_set == KernelSet::specialized; }
+
+  /// Where a path keeps --path-bytes.
+  std::string state_place() const {
+    const bool in_blocks = is_on_gpu(Mode::wavefront) && plan_.finishes_in_blocks;
+    if (plan_.mode == Mode::wavefront)
+      return in_blocks ? "in the pool, then in the blocks' slots" : "in the pool";
+    if (!is_on_gpu(Mode::megakernel)) return "beside the thread's path";
+    return plan_.megakernel == MegakernelKind::loop   ? "in registers"
+           : plan_.megakernel == MegakernelKind::vote ? "in shared memory"
+                                                      : "in the blocks' slots";
+  }
+
   bool is_on_gpu(Mode mode) const { return device_.is_cuda && plan_.mode == mode; }
 
   /// Whether a block-local wavefront fits into a block's shared memory.

@@ -72,6 +72,18 @@ std::string structures_of(const KernelRow& row, const char* separator) {
   return names_of(row.accels, accel_count, accel_name, separator);
 }
 
+std::string bytes_of(EnumSet<ExtraRecords> records, const char* separator) {
+  constexpr int count = static_cast<int>(ExtraRecords::most) + 1;
+  if (records.contains(ExtraRecords{1})) return "16 to 256";
+  return names_of(
+      records, count,
+      [](ExtraRecords r) { return std::to_string(static_cast<int>(r) * path_bytes_step); },
+      separator);
+}
+std::string path_bytes_option(EnumSet<ExtraRecords> records) {
+  return "--path-bytes " + bytes_of(records, " or ");
+}
+
 /// What would change if a row served a need, and what that costs.
 class Change {
  public:
@@ -101,6 +113,11 @@ class Change {
     if (!row.sources.intersects(need.sources))
       add(rng, 8, source_option(first_of(need.sources, 3)),
           source_option(first_of(row.sources, 3)));
+    if (row.on_cuda && !row.extra.intersects(need.extra)) {
+      is_possible_ = is_possible_ && row.extra != EnumSet<ExtraRecords>();
+      add(path_bytes, row.extra.contains(ExtraRecords::none) ? 9 : 3, path_bytes_option(need.extra),
+          path_bytes_option(row.extra));
+    }
   }
 
   /// Whether it is another kernel for the same scene.
@@ -125,7 +142,7 @@ class Change {
   bool is_possible_ = false;
 };
 
-using Cells = std::array<std::string, 8>;
+using Cells = std::array<std::string, 9>;
 
 Cells cells_of(const KernelRow& row) {
   std::string scene = geometry_names[static_cast<int>(row.geometry)];
@@ -144,7 +161,10 @@ Cells cells_of(const KernelRow& row) {
                                                                  : 0],
       names_of(row.sources, 3, [](NumberSource s) { return source_names[static_cast<int>(s)]; }),
       names_of(row.memories, 4, [](SceneMemory m) { return to_string(m); }),
-      names_of(row.branchings, 2, [](Branching b) { return to_string(b); })};
+      names_of(row.branchings, 2, [](Branching b) { return to_string(b); }),
+      !row.on_cuda                           ? "0 to 256"
+      : row.extra == EnumSet<ExtraRecords>() ? "not in this build"
+                                             : bytes_of(row.extra, ", ")};
 }
 
 }  // namespace
@@ -161,7 +181,7 @@ NearestKernel nearest_kernel(const KernelNeed& need, EnumSet<KernelChoice> asked
 
 std::string kernel_list() {
   std::vector<Cells> lines{{"device", "code", "--accel", "scenes", "lights", "random numbers",
-                            "scene memory", "branching"}};
+                            "scene memory", "branching", "path bytes"}};
   for (const KernelRow& row : kernel_table) lines.push_back(cells_of(row));
   std::array<std::size_t, std::tuple_size_v<Cells>> widths{};
   for (const Cells& line : lines)

@@ -44,6 +44,7 @@ class EnumSet {
     both.bits_ = bits_ | other.bits_;
     return both;
   }
+  constexpr bool operator==(const EnumSet&) const = default;
   constexpr bool contains(E value) const { return (bits_ & bit(value)) != 0; }
   constexpr bool intersects(EnumSet other) const { return (bits_ & other.bits_) != 0; }
 
@@ -51,6 +52,21 @@ class EnumSet {
   static constexpr std::uint32_t bit(E value) { return 1u << static_cast<int>(value); }
   std::uint32_t bits_ = 0;
 };
+
+/// Records of 16 bytes that a path carries besides its own state (--path-bytes).
+enum class ExtraRecords : int { none = 0, most = path_bytes_max / path_bytes_step };
+inline constexpr EnumSet<ExtraRecords> some_records = [] {
+  EnumSet<ExtraRecords> set;
+  for (int i = 1; i <= static_cast<int>(ExtraRecords::most); ++i) set = set | ExtraRecords{i};
+  return set;
+}();
+
+/// Whether CUDA has kernels whose paths carry some: a choice of the build, since they take long to
+/// compile.
+inline constexpr bool has_carrying_kernels = PTEXP_PATH_STATE != 0;
+constexpr EnumSet<ExtraRecords> if_built(EnumSet<ExtraRecords> records) {
+  return has_carrying_kernels ? records : EnumSet<ExtraRecords>();
+}
 
 inline constexpr int accel_count = static_cast<int>(Accel::cwbvh_avx2) + 1;
 
@@ -71,6 +87,7 @@ struct KernelRow {
   EnumSet<Content> without = {};
   EnumSet<SceneMemory> memories = SceneMemory::global;
   EnumSet<Branching> branchings = Branching::divergent;
+  EnumSet<ExtraRecords> extra = ExtraRecords::none;  ///< on a CPU every kernel carries any number
 };
 
 namespace kernel_rows {
@@ -85,6 +102,10 @@ using enum Branching;
 using enum Content;
 inline constexpr bool cpu = false, cuda = true;
 inline constexpr EnumSet<Accel> trees = tree_accels;
+// In registers, and so by a kernel for each number; in memory.
+inline constexpr auto in_registers =
+    if_built({ExtraRecords{2}, ExtraRecords{4}, ExtraRecords{8}, ExtraRecords{16}});
+inline constexpr auto in_memory = if_built(some_records);
 
 // clang-format off
 inline constexpr KernelRow table[] = {
@@ -112,6 +133,9 @@ inline constexpr KernelRow table[] = {
     {cuda, {blocks, warps}, cwbvh, mixed, full, plain, sampler, spheres},
     {cuda, {blocks, warps}, cwbvh, mixed, full, with_masks, sampler, {spheres, instances}},
     {cuda, {blocks, warps}, cwbvh, mixed, full, with_media, sampler, {spheres, instances, open_boundaries}},
+    // With --path-bytes.
+    {cuda, loop, bvh2, triangles, full, plain, sampler, {}, global, divergent, in_registers},
+    {cuda, {vote, blocks, warps}, cwbvh, triangles, full, plain, sampler, {}, global, divergent, in_memory},
 };
 // clang-format on
 }  // namespace kernel_rows
@@ -126,6 +150,7 @@ struct KernelNeed {
   SceneMemory memory = SceneMemory::global;
   Branching branching = Branching::divergent;
   EnumSet<Content> contents = {};
+  EnumSet<ExtraRecords> extra = ExtraRecords::none;  ///< one of them
 };
 
 constexpr bool is_of_scene(const KernelRow& row, const SceneTraits& scene) {
@@ -138,7 +163,8 @@ constexpr bool serves(const KernelRow& row, const KernelNeed& need) {
   return row.on_cuda == need.on_cuda && row.bodies.intersects(need.bodies) &&
          row.accels.contains(need.scene.accel) && is_of_scene(row, need.scene) &&
          row.sources.intersects(need.sources) && row.memories.contains(need.memory) &&
-         row.branchings.contains(need.branching) && !row.without.intersects(need.contents);
+         row.branchings.contains(need.branching) && !row.without.intersects(need.contents) &&
+         (!row.on_cuda || row.extra.intersects(need.extra));
 }
 
 constexpr bool has_kernel(const KernelNeed& need) {
@@ -169,7 +195,7 @@ constexpr SceneTraits general_traits(Accel accel, EnumSet<Content> contents, boo
 }
 
 /// Which parts of a need the user asked for; the plan chose the others.
-enum class KernelChoice { accel, memory, body, branching, rng };
+enum class KernelChoice { accel, memory, body, branching, rng, path_bytes };
 
 /// For a need that no kernel serves: the options that the user gave and that stand in the way,
 /// "--accel cwbvh", and those of a kernel for the same scene, "--accel bvh2". The nearest row

@@ -84,7 +84,7 @@ KernelBody body_of(const ExecutionPlan& plan, bool on_cuda) {
 }
 
 EnumSet<KernelChoice> asked_choices(const Options& o) {
-  EnumSet<KernelChoice> asked{KernelChoice::branching, KernelChoice::rng};
+  EnumSet<KernelChoice> asked{KernelChoice::branching, KernelChoice::rng, KernelChoice::path_bytes};
   if (o.accel != AccelKind::automatic) asked = asked | KernelChoice::accel;
   if (o.scene_memory != SceneMemory::automatic) asked = asked | KernelChoice::memory;
   if (o.kernel != MegakernelKind::automatic || o.stages != Stages::automatic)
@@ -130,6 +130,21 @@ void check_kernels(const ExecutionPlan& plan, const Options& o, const ScenePrope
                             on_cuda ? "CUDA" : "the CPU", scene.name,
                             scene_text(need, o, scene, refused), expected));
   }
+}
+
+/// Paths that carry more on CUDA have kernels of their own.
+void check_path_bytes(const ExecutionPlan& plan) {
+  if (plan.path_bytes == 0) return;
+  const auto refuse = [&](const char* why) {
+    throw Error(fmt::format("--path-bytes {}: {}", plan.path_bytes, why));
+  };
+  if (!has_carrying_kernels)
+    refuse(
+        "this build has no kernels on CUDA for it; expected 0, or a build with "
+        "-DPTEXP_PATH_STATE=ON");
+  if (plan.kernel_set == KernelSet::specialized)
+    refuse(
+        "on CUDA the lean kernels of spheres and quads know none; expected --kernel-set general");
 }
 
 void check_scene_memory(const ExecutionPlan& plan, const SceneProperties& scene,
@@ -178,6 +193,7 @@ KernelNeed need_of(const ExecutionPlan& plan, const Options& o, const ScenePrope
   need.bodies = body_of(plan, on_cuda);
   need.contents = contents_of(scene);
   need.branching = o.branching;
+  need.extra = ExtraRecords{o.path_bytes / path_bytes_step};
   if (plan.kernel_set == KernelSet::specialized) {
     need.scene = {plan.traversal, Geometry::spheres_and_quads,
                   scene.has_emitters ? Lighting::emitters : Lighting::sky};
@@ -198,6 +214,10 @@ void check_options_for_scene(const Options& options, const SceneProperties& scen
   if (options.counters && options.integrator == IntegratorKind::mlt)
     throw Error(
         "--counters with --integrator mlt: they are read of a path tracer's batch; expected path");
+  if (options.path_bytes > 0 && options.integrator == IntegratorKind::mlt)
+    throw Error(
+        fmt::format("--path-bytes {}: paths of --integrator mlt carry no more state; expected path",
+                    options.path_bytes));
   for (const SceneRule& rule : rules) {
     const std::string value = rule.limited(options);
     if (value.empty() || rule.suits(scene, options)) continue;
@@ -209,6 +229,7 @@ void check_options_for_scene(const Options& options, const SceneProperties& scen
 void check_plan(const ExecutionPlan& plan, const Options& options, const SceneProperties& scene,
                 const DeviceProperties& device) {
   check_builder(options.builder, accel_kind_of(plan.accel), device.is_cuda);
+  if (device.is_cuda) check_path_bytes(plan);
   check_kernels(plan, options, scene, device.is_cuda);
   if (!device.is_cuda) return;
   check_scene_memory(plan, scene, device);

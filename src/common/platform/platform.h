@@ -29,6 +29,13 @@
 
 namespace pt {
 
+/// Whether the file is compiled for CUDA.
+#ifdef __CUDACC__
+inline constexpr bool is_cuda_code = true;
+#else
+inline constexpr bool is_cuda_code = false;
+#endif
+
 /// Whether pairs of halves (below) are computed by instructions.
 #ifdef __CUDA_ARCH__
 inline constexpr bool has_half_pairs = true;

@@ -10,6 +10,7 @@
 #include "common/platform/type_list.h"
 #include "common/sampling/sampler_source.h"
 #include "common/scene/data/scene.h"
+#include "common/transport/extra_state.h"
 
 namespace pt {
 
@@ -19,12 +20,17 @@ template <>
 inline constexpr NumberSource number_source<PhiloxSource> = NumberSource::philox;
 template <>
 inline constexpr NumberSource number_source<SamplerSource> = NumberSource::sampler;
+template <int records>
+inline constexpr NumberSource number_source<CarryingSource<records>> = NumberSource::sampler;
 
-/// Kernels with one of these bodies, one source of random numbers and one scene memory.
-template <bool on_cuda, NumberSource source, SceneMemory memory, KernelBody... bodies>
+/// Kernels with one of these bodies, this source of random numbers and one scene memory.
+template <bool on_cuda, class Source, SceneMemory memory, KernelBody... bodies>
 struct KernelSelection {
   static constexpr bool has(const SceneTraits& scene) {
-    KernelNeed need{on_cuda, {bodies...}, scene, source, memory};
+    KernelNeed need{on_cuda, {bodies...}, scene, number_source<Source>, memory};
+    if constexpr (requires { Source::extra_records; })
+      need.extra =
+          Source::extra_records == any_extra ? some_records : ExtraRecords{Source::extra_records};
     if (has_kernel(need)) return true;
     need.branching = Branching::reduced;
     return has_kernel(need);
@@ -86,8 +92,8 @@ using CpuSceneKinds = TraitsOf<CpuKernels>;
 
 /// Those with this source of random numbers.
 template <class Source>
-using CpuKindsWith = TraitsOf<
-    KernelSelection<false, number_source<Source>, SceneMemory::global, KernelBody::serial>>;
+using CpuKindsWith =
+    TraitsOf<KernelSelection<false, Source, SceneMemory::global, KernelBody::serial>>;
 
 /// Throws Error, which names them.
 [[noreturn]] void throw_no_kernel(const SceneTraits& traits);

@@ -25,7 +25,7 @@ void check_film(const ImageSettings& settings, const SceneProperties& scene,
 
 FilmRenderer::FilmRenderer(const ExecutionPlan& plan, const SceneData& scene)
     : plan_(plan),
-      path_settings_(path_settings_of(plan)),
+      path_settings_(path_settings_of(plan, plan.path_bytes)),
       film_plan_(film_plan_of(plan, scene.filter)),
       filter_(scene.filter),
       image_window_(window_of(plan)),

@@ -10,10 +10,14 @@
 
 namespace pt {
 
-inline PathSettings path_settings_of(const ImageSettings& settings) {
+/// `path_bytes`: as in ExecutionSettings.
+inline PathSettings path_settings_of(const ImageSettings& settings, int path_bytes = 0) {
   return {static_cast<std::uint32_t>(settings.max_depth),
-          static_cast<std::uint32_t>(settings.rr_depth), settings.nee, settings.sampling,
-          settings.mis};
+          static_cast<std::uint32_t>(settings.rr_depth),
+          settings.nee,
+          settings.sampling,
+          settings.mis,
+          static_cast<std::uint32_t>(path_bytes / path_bytes_step)};
 }
 
 inline FilmPlan film_plan_of(const ImageSettings& settings, const PixelFilter& filter) {

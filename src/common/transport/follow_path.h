@@ -1,6 +1,7 @@
 // A path from a ray to its end: what one thread does that follows it alone.
 #pragma once
 
+#include "common/transport/extra_state.h"
 #include "common/transport/path_step.h"
 
 namespace pt {
@@ -30,9 +31,10 @@ PT_HD_IN_KERNEL bool follow_ray(const Scene& scene, Ray& ray, PathState& path, C
 template <class Traits, class Stream>
 PT_HD Color follow_path(const Scene& scene, Ray ray, PathState& path, Color radiance,
                         const PathSettings& settings, Stream& random, std::uint32_t path_key) {
-  while (follow_ray<Traits>(scene, ray, path, radiance, settings, random, path_key)) {
-  }
-  return radiance;
+  ExtraRegisters<extra_records_of<Stream>()> extra(settings);
+  extra.begin(path.index);
+  while (follow_ray<Traits>(scene, ray, path, radiance, settings, random, path_key)) extra.step();
+  return extra.is_whole(path) ? radiance : broken_radiance();
 }
 
 }  // namespace pt

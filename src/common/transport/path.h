@@ -51,6 +51,7 @@ struct PathSettings {
   bool nee = true;                   ///< next-event estimation
   DirectionSampling directions = DirectionSampling::bsdf;
   MisHeuristic mis = MisHeuristic::power;
+  std::uint32_t extra_records = 0;  ///< of each path (extra_state.h)
 
   /// Whether a path that has traced `rays` takes part in the roulette.
   PT_HD bool is_roulette(std::uint32_t rays) const {

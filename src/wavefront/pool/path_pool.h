@@ -12,6 +12,7 @@
 #include "common/medium/free_flight.h"
 #include "common/options/options.h"
 #include "common/options/stage_info.h"
+#include "common/transport/extra_state.h"
 #include "common/transport/path_records.h"
 
 namespace pt {
@@ -56,6 +57,7 @@ struct PathPool {
   // Only with compaction over tags; arrays in both layouts, since a pass reads them alone:
   StageId* tag = nullptr;
   StageId* shadow_tag = nullptr;  ///< shadow, or free_slot: no shadow ray waits
+  ExtraState extra;               ///< only with --path-bytes
 
   static constexpr std::uint32_t new_path = 0x80000000u;  ///< indices are below 2^31
 
@@ -66,6 +68,7 @@ struct PathPool {
     bool hits = true;  ///< false: none is stored
     bool media = false;
     bool flights = false;
+    std::uint32_t extra_records = 0;
   };
 
   /// Sets what a pool of `slot_count` slots needs to allocate(T*{}, count), room for `count` of T,
@@ -81,6 +84,8 @@ struct PathPool {
       for_each_field(fields, [&]<class T>(T*& field) {
         field = reinterpret_cast<T*>(slot_0 + next_offset<T>(end));
       });
+      extra = {reinterpret_cast<char*>(slot_0) + next_offset<PathRecord>(end), fields.extra_records,
+               slot_bytes, 4, 0};
     } else {
       if (fields.layout == PoolLayout::sectors) {
         strides.ray = 2 * sizeof(PathRecord);
@@ -91,6 +96,12 @@ struct PathPool {
       for_each_field(fields, [&](auto*& field) {
         if (field == nullptr) field = allocate(field, n);
       });
+      if (fields.extra_records > 0) {
+        const std::uint32_t row_bytes = extra_row(fields) * extra_record_bytes;
+        std::byte* const all = allocate(static_cast<std::byte*>(nullptr), n * extra_bytes(fields));
+        extra = {reinterpret_cast<char*>(all), fields.extra_records, row_bytes,
+                 extra_row(fields) - 1, n * row_bytes};
+      }
     }
     for_each_tag(fields, [&](StageId*& tags) { tags = allocate(tags, n); });
   }
@@ -103,7 +114,7 @@ struct PathPool {
     pool.for_each_tag(fields, add);
     if (fields.layout == PoolLayout::aos) return sum + fields_bytes(fields);
     pool.for_each_field(fields, add);
-    return sum;
+    return sum + extra_bytes(fields);
   }
 
   /// Where the slot's element of a field is: at(throughput, slot).
@@ -245,7 +256,17 @@ struct PathPool {
   }
 
  private:
-  // All that a slot has, in the order in which it lies side by side.
+  /// Records side by side where they have arrays: two share a sector as a ray's do.
+  static constexpr std::uint32_t extra_row(const Fields& fields) {
+    return fields.layout == PoolLayout::sectors ? 2 : 1;
+  }
+  /// Of a slot; whole rows.
+  static constexpr std::uint32_t extra_bytes(const Fields& fields) {
+    const std::uint32_t row = fields.layout == PoolLayout::aos ? 1 : extra_row(fields);
+    return (fields.extra_records + row - 1) / row * row * extra_record_bytes;
+  }
+
+  // All that a slot has, in the order in which it lies side by side, but for its extra records.
   template <class Function>
   void for_each_field(const Fields& fields, Function&& function) {
     function(origin), function(direction), function(throughput);
@@ -281,7 +302,7 @@ struct PathPool {
   static std::uint32_t fields_bytes(const Fields& fields) {
     std::uint32_t end = 0;
     PathPool().for_each_field(fields, [&]<class T>(T*) { next_offset<T>(end); });
-    return next_offset<PathRecord>(end);
+    return next_offset<PathRecord>(end) + extra_bytes(fields);
   }
 
   template <class T>

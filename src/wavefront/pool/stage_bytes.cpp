@@ -17,7 +17,7 @@ class Predictor {
     const double ray_index = layout_.has_queues ? index : 0;
     const bool has_input = layout_.queues_free || !layout_.has_queues;
     return {has_input ? find(flow_.generated) : 0,
-            flow_.generated * (2 * record + ray_index + sample_bytes + own_tag())};
+            flow_.generated * (2 * record + extra() + ray_index + sample_bytes + own_tag())};
   }
 
   PredictedBytes intersect() const {
@@ -35,14 +35,15 @@ class Predictor {
     // The direction alone, but where it shares a sector with the origin both move.
     const bool whole = layout_.all_lights || layout_.fields.layout == PoolLayout::sectors;
     const double ray = whole ? 2 * record : record;
-    return {find(n) + n * (ray + old_path() + before()), n * (sample + free())};
+    return {find(n) + n * (ray + old_path() + extra() + before()), n * (sample + free())};
   }
 
   PredictedBytes shade_surface() const {
     const double n = flow_.surfaces, alive = flow_.continued, ended = n - alive;
     const double shadows = flow_.shadows;
-    return {find(n) + n * (2 * record + old_path() + hit() + receiver()) + ended * before(),
-            alive * (3 * record + receiver() + send()) + ended * (sample + free()) +
+    const double loaded = 2 * record + old_path() + hit() + receiver() + extra();
+    return {find(n) + n * loaded + ended * before(),
+            alive * (3 * record + receiver() + extra() + send()) + ended * (sample + free()) +
                 shadows * (3 * record + (layout_.appends ? index : 0)) +
                 (layout_.fields.lights && !layout_.appends ? n * tag : 0)};
   }
@@ -86,6 +87,8 @@ class Predictor {
   double hit() const {
     return sizeof(StoredHit) + (layout_.fields.instances ? sizeof(std::uint32_t) : 0);
   }
+  /// The records of --path-bytes, which each ray loads and, if its path goes on, stores.
+  double extra() const { return record * layout_.fields.extra_records; }
   double receiver() const { return layout_.fields.receivers ? sizeof(Receiver) : 0; }
   /// What has happened to a path; nothing has to a new one.
   double old_path() const {
