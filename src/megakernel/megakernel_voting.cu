@@ -13,9 +13,9 @@ constexpr int blocks_least = 3;  // 80 registers for a thread
 
 /// The shared memory of a block with this many threads.
 constexpr std::size_t shared_bytes_of(int threads, int path_bytes) {
-  const auto warps = static_cast<std::size_t>(threads) / 32;
-  return sizeof(SlotOrder) + warps * (sizeof(PhaseVotingWarp) + 32 * path_bytes);
+  return phase_voting_bytes(threads) + static_cast<std::size_t>(threads) * path_bytes;
 }
+static_assert(phase_voting_bytes(32) == sizeof(SlotOrder) + sizeof(PhaseVotingWarp));
 
 /// The extra records of a warp's lanes, behind all warps: an array over the lanes for each record.
 __device__ ExtraState extra_of_warp(PhaseVotingWarp* warps, std::uint32_t records) {

@@ -7,6 +7,7 @@
 #include "common/error/error.h"
 #include "common/options/option_names.h"
 #include "common/plan/execution_plan.h"
+#include "common/plan/kernels.h"
 #include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {
@@ -625,6 +626,39 @@ TEST(ExecutionPlan, SpheresLieInGlobalMemoryForMostKernels) {
       mega({{"rng", "xorwow"}}), lit(quads(9)), gpu(),
       "--rng xorwow: no kernel on CUDA renders scene '' (spheres and quads, emitters) so; "
       "expected --rng philox");
+}
+
+TEST(ExecutionPlan, PathBytesHaveKernelsOfTheirOwnOnCuda) {
+  const auto place_of = [](Choices more, const DeviceProperties& device) {
+    more.insert({"path-bytes", "64"});
+    for (const Decision& decision : plan_of(more, mesh(), device).decisions)
+      if (decision.option == "path-bytes") return decision.value + " " + decision.reason;
+    return std::string();
+  };
+  EXPECT_EQ(place_of({}, cpu()), "64 in the pool");
+  EXPECT_EQ(place_of(mega(), cpu()), "64 beside the thread's path");
+  if (!has_carrying_kernels) {
+    expect_refused(mega({{"path-bytes", "64"}}), mesh(), gpu(),
+                   "--path-bytes 64: this build has no kernels on CUDA for it; expected 0, or a "
+                   "build with -DPTEXP_PATH_STATE=ON");
+    return;
+  }
+  EXPECT_EQ(place_of({}, gpu()), "64 in the pool, then in the blocks' slots");
+  EXPECT_EQ(place_of(mega({{"kernel", "loop"}}), gpu()), "64 in registers");
+  EXPECT_EQ(place_of(mega({{"kernel", "vote"}}), gpu()), "64 in shared memory");
+  EXPECT_EQ(place_of(mega(), gpu()), "64 in the blocks' slots");
+  expect_refused(mega({{"kernel", "loop"}, {"path-bytes", "48"}}), mesh(), gpu(),
+                 "--path-bytes 48: no kernel on CUDA renders scene '' (triangles) so; expected "
+                 "--path-bytes 32 or 64 or 128 or 256");
+  expect_refused(mega({{"path-bytes", "64"}}), masked_mesh(), gpu(),
+                 "--path-bytes 64: no kernel on CUDA renders scene '' (triangles, masks, a far "
+                 "plane or hidden emitters) so; expected --path-bytes 0");
+  expect_refused({{"path-bytes", "64"}}, spheres(51), gpu(),
+                 "--path-bytes 64: on CUDA the lean kernels of spheres and quads know none; "
+                 "expected --kernel-set general");
+  expect_refused(mega({{"kernel", "vote"}, {"path-bytes", "256"}}), mesh(), gpu(99),
+                 "--path-bytes 256: with --kernel vote a block of 256 threads needs 116 KiB of "
+                 "shared memory; one of this device has at most 99");
 }
 
 TEST(ExecutionPlan, EmbreeHasNoMasks) {
