@@ -51,6 +51,8 @@ const std::map<std::string, std::string>& other_values() {
       {"wave-rays", "3"},
       {"wave-collisions", "4"},
       {"path-bytes", "48"},
+      {"sms", "16"},
+      {"shared-memory-max", "64"},
       {"seed", "18446744073709551615"},
       {"output", "a b.png"},
       {"exposure", "-1.5"},
@@ -539,6 +541,8 @@ TEST(Refused, NothingWithinTheLimits) {
       {"threads", {"0", "65535"}, {"65536"}},
       {"pool-size", {"1", "2147483647", "2047M"}, {"0", "2147483648", "2048M"}},
       {"wave-collisions", {"0", "65535"}, {"65536"}},
+      {"sms", {"8", "65535"}, {"65536", "-1", "half"}},
+      {"shared-memory-max", {"48", "227"}, {"65536", "64K"}},
       {"wave-rays", {"1", "65535"}, {"0", "65536"}},
       {"path-bytes", {"0", "16", "256"}, {"8", "257", "272"}},
       {"finish-paths", {"0", "1073741824"}, {"1073741825"}},
@@ -720,6 +724,9 @@ TEST(Refused, Contradictions) {
       {"--width 8 --height 4 --crop 0,0,9,4",
        "--crop 0,0,9,4: expected pixels of the image of 8x4"},
       {"--width 8 --height 4 --crop 0,0,8,5", "--crop 0,0,8,5: expected pixels"},
+      {"--sms 16 --counters", "--counters: reads those of a whole GPU; expected no --sms"},
+      {"--sms -8", "--sms -8: expected a whole number"},
+      {"--shared-memory-max 64K", "--shared-memory-max 64K: expected a whole number"},
   });
 }
 
@@ -756,6 +763,7 @@ TEST(Refused, WithoutEffectInTheMode) {
        "--kernel and --compaction: have no effect in one mode; expected options of the megakernel "
        "or of the wavefront"},
       {"--mode serial --threads 2", "--threads 2: has no effect with --mode serial"},
+      {"--mode serial --sms 8", "--sms 8: has no effect with --mode serial"},
       {"--mode serial --device cuda:1", "--device cuda:1: has no effect with --mode serial"},
       {"--mode serial --scene-memory shared", "--scene-memory shared: has no effect"},
       {"--mode serial --branching reduced", "--branching reduced: has no effect"},
@@ -828,6 +836,11 @@ TEST(Refused, WithoutEffectOnTheDevice) {
       {"--device cpu --scene-memory shared", "--scene-memory shared: has no effect"},
       {"--device cpu --create-world device", "--create-world device: has no effect"},
       {"--device cuda --threads 3", "--threads 3: has no effect on the device cuda"},
+      {"--device cpu --sms 16",
+       "--sms 16: has no effect on the device cpu; it applies to cuda; on a CPU, --threads sets "
+       "the size"},
+      {"--device cpu --shared-memory-max 64",
+       "--shared-memory-max 64: has no effect on the device"},
       {"--device cpu --mode megakernel --counters",
        "has no effect on the device cpu; it applies to cuda; on a CPU `perf stat"},
   });

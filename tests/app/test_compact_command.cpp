@@ -21,9 +21,9 @@ CompactCommand parse_compact(std::vector<std::string> arguments) {
 
 TEST(CompactCommandLine, ReadsAllOptions) {
   const CompactCommand c = parse_compact(
-      {"--items",  "1,5K,2M", "--density", "0,0.25,1",   "--run",    "2K",       "--queues",
-       "2,1",      "--cache", "warm",      "--strategy", "none,cub", "--device", "cuda:1",
-       "--repeat", "5",       "--warmup",  "0",          "--csv",    "c",        "--quiet"});
+      {"--items",  "1,5K,2M", "--density",  "0,0.25,1", "--run",    "2K",     "--queues", "2,1",
+       "--cache",  "warm",    "--strategy", "none,cub", "--device", "cuda:1", "--sms",    "16",
+       "--repeat", "5",       "--warmup",   "0",        "--csv",    "c",      "--quiet"});
   EXPECT_EQ(c.items, (std::vector<std::uint32_t>{1, 5 << 10, 2 << 20}));
   EXPECT_EQ(c.densities, (std::vector<float>{0.0f, 0.25f, 1.0f}));
   EXPECT_EQ(c.run_length, 2048u);
@@ -31,6 +31,7 @@ TEST(CompactCommandLine, ReadsAllOptions) {
   EXPECT_FALSE(c.runs.cold);
   EXPECT_EQ(c.strategies, (std::vector<Compaction>{Compaction::none, Compaction::cub}));
   EXPECT_EQ(c.device.index, 1);
+  EXPECT_EQ(c.limits.sms, 16);
   EXPECT_EQ(c.runs.repeat, 5);
   EXPECT_EQ(c.runs.warmup, 0);
   EXPECT_EQ(c.csv, "c");
@@ -66,6 +67,12 @@ TEST(CompactCommandLine, RefusesWhatItCannotDo) {
   refuse({"--strategy", "cub,fast"}, "--strategy fast: expected one of cub, scan");
   refuse({"--strategy", "sort"}, "--strategy sort: expected one of cub, scan");
   refuse({"--cache", "hot"}, "--cache hot");
+  refuse({"--sms", "many"}, "--sms many: expected a whole number");
+  expect_error(
+      [] {
+        compact_command(parse_compact({"--device", "cpu", "--sms", "8"}));
+      },
+      "--sms 8: has no effect on the device cpu; it applies to cuda");
   refuse({"--repeat", "0"}, "--repeat 0");
   refuse({"--items", "1", "--items", "0"}, "--items 0");  // the last holds
   refuse({"--spp", "5"}, "--spp");

@@ -21,7 +21,8 @@ Machine healthy() {
   machine.cuda.is_built = true;
   machine.cuda.built = machine.cuda.runtime = machine.cuda.driver = 13000;
   machine.cuda.cupti = "libcupti.so.13";
-  machine.cuda.gpus = {{"NVIDIA H200", 9, 0, 150'000'000'000, 149'000'000'000, 49152, 232448, ""}};
+  machine.cuda.gpus = {
+      {"NVIDIA H200", 9, 0, 132, 150'000'000'000, 149'000'000'000, 49152, 232448, ""}};
   machine.mpi = {"Open MPI 4.1.4", "Open MPI v4.1.4", "/usr/bin/orterun"};
   machine.cpu = {"Some CPU", 8, true, false};
   machine.memory = 64ull << 30, machine.free_memory = 32ull << 30;
@@ -116,7 +117,7 @@ TEST(Doctor, VersionsHaveMinorNumbersOfTwoDigits) {
 TEST(Doctor, PrintsTheMachinesNumbers) {
   Machine machine = healthy();
   machine.cuda.driver = 13020, machine.cuda.built = machine.cuda.runtime = 13010;
-  machine.cuda.gpus = {{"GPU", 9, 3, 8ull << 30, 6ull << 30, 48 << 10, 227 << 10, ""}};
+  machine.cuda.gpus = {{"GPU", 9, 3, 78, 8ull << 30, 6ull << 30, 48 << 10, 227 << 10, ""}};
   machine.build.cuda = "13.1.20, architectures 90";
   machine.cpu.has_avx512 = true;
   machine.temp.free = 3ull << 30, machine.current.free = 5ull << 30;
@@ -124,7 +125,7 @@ TEST(Doctor, PrintsTheMachinesNumbers) {
             R"(ok       ptexp            0.1.0, commit abc, Release, GNU 12.2.0
 ok       driver           580.95.05, for CUDA 13.2
 ok       CUDA             runtime 13.1, built by nvcc 13.1.20, architectures 90
-ok       GPU cuda:0       GPU, compute capability 9.3, 6.0 GiB free of 8.0 GiB, 48 KiB of shared memory per block (at most 227 KiB)
+ok       GPU cuda:0       GPU, 78 multiprocessors, compute capability 9.3, 6.0 GiB free of 8.0 GiB, 48 KiB of shared memory per block (at most 227 KiB)
 ok       code for cuda:0  machine code, of 90
 ok       counters         libcupti.so.13; the driver lets this user read them
 ok       MPI              built with Open MPI 4.1.4, loaded Open MPI v4.1.4, launched by /usr/bin/orterun
@@ -144,7 +145,7 @@ ok       current folder   /home/me: writable, 5.0 GiB free
 missing  driver           580.95.05, for CUDA 12.8
                           -> install a driver for CUDA 13.1 or newer
 ok       CUDA             runtime 13.1, built by nvcc 13.1.20, architectures 80
-warning  GPU cuda:0       GPU, compute capability 9.3, 0.5 GiB free of 8.0 GiB, 48 KiB of shared memory per block (at most 227 KiB)
+warning  GPU cuda:0       GPU, 78 multiprocessors, compute capability 9.3, 0.5 GiB free of 8.0 GiB, 48 KiB of shared memory per block (at most 227 KiB)
                           -> scene and paths need memory: see `nvidia-smi` for who has it
 warning  code for cuda:0  PTX alone, of 80: the driver compiles it at the first start, for a minute or more, and keeps it in ~/.nv/ComputeCache
                           -> build with -DCMAKE_CUDA_ARCHITECTURES=93
@@ -165,7 +166,7 @@ missing  current folder   /home/me: read-only
 TEST(Doctor, SaysWhatToBuildForAnotherGpu) {
   Machine machine = healthy();
   machine.build.cuda = "13.0.88, architectures 75-virtual";
-  machine.cuda.gpus.push_back({"NVIDIA L4", 8, 9, 1ull << 34, 1ull << 34, 49152, 101376, ""});
+  machine.cuda.gpus.push_back({"NVIDIA L4", 8, 9, 58, 1ull << 34, 1ull << 34, 49152, 101376, ""});
   EXPECT_EQ(complaints(machine), (Names{"warning code for cuda:0", "warning code for cuda:1"}));
   EXPECT_EQ(find(machine, "code for cuda:1").remedy, "build with -DCMAKE_CUDA_ARCHITECTURES=89");
 }
@@ -308,12 +309,12 @@ TEST(DoctorJson, HasTheNumbersOfTheMachine) {
   Machine machine = healthy();
   machine.memory = 111, machine.free_memory = 22;
   machine.cpu = {"Name", 33, true, false};
-  machine.cuda.gpus = {{"G", 8, 6, 444, 55, 66, 77, "p"}};
+  machine.cuda.gpus = {{"G", 8, 6, 82, 444, 55, 66, 77, "p"}};
   const auto json = nlohmann::json::parse(doctor_json(machine, {}));
   EXPECT_EQ(json["machine"], nlohmann::json::parse(R"({
     "driver": "580.95.05", "cpu": "Name", "threads": 33, "avx2": true, "avx512": false,
     "memory_bytes": 111, "free_memory_bytes": 22,
-    "gpus": [{"name": "G", "compute_capability": "8.6", "memory_bytes": 444,
+    "gpus": [{"name": "G", "compute_capability": "8.6", "multiprocessors": 82, "memory_bytes": 444,
               "free_memory_bytes": 55, "block_shared_bytes": 66, "block_shared_bytes_max": 77,
               "problem": "p"}]})"));
   EXPECT_EQ(json["version"], "0.1.0");

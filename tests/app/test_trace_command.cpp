@@ -136,6 +136,22 @@ TEST_F(TraceFiles, AppendsRows) {
   EXPECT_EQ(column("threads"), "");
 }
 
+TEST_F(TraceFiles, AreTracedOnAPartOfAGpuAlone) {
+  command_.limits.sms = 16;
+  command_.device = {DeviceChoice::Kind::cpu, 0};
+  expect_error([&] { trace_command(command_); },
+               "--sms 16: has no effect on the device cpu; it applies to cuda");
+  DeviceInfo gpu;
+  gpu.choice.kind = DeviceChoice::Kind::cuda, gpu.name = "GPU", gpu.properties.is_cuda = true;
+  gpu.properties.multiprocessors = 40;
+  const DeviceInfo part = limited(gpu, command_.limits);
+  EXPECT_EQ(part.name, "GPU, 16 of 40 multiprocessors");
+  EXPECT_EQ(part.properties.multiprocessors, 16);
+  EXPECT_EQ(part.sms, 16);
+  EXPECT_EQ(limited(gpu, {40, 0}).name, "GPU");
+  expect_error([&] { limited(gpu, {41, 0}); }, "--sms 41: the GPU has 40 multiprocessors");
+}
+
 TEST_F(TraceFiles, ReplaceNothingThatIsRead) {
   command_.hits = folder_.file("h");
   TraceCommand first = command_;

@@ -520,6 +520,67 @@ void expect_refused(const Choices& settings, const SceneProperties& scene,
   }
 }
 
+TEST(ExecutionPlan, SeesAGpuOfTheSizeThatIsAskedFor) {
+  for (const int sms : {8, 16, 20, 66, 132}) {
+    SCOPED_TRACE(sms);
+    DeviceProperties small = gpu();
+    small.multiprocessors = sms;
+    const Choices asked = {{"mode", "auto"}, {"sms", std::to_string(sms)}};
+    for (const std::size_t triangles : {std::size_t{1000}, std::size_t{10'000'000}}) {
+      const SceneProperties scene =
+          changed(mesh(), [&](SceneProperties& s) { s.triangles = triangles; });
+      ExecutionPlan part = plan_of(asked, scene, gpu());
+      const ExecutionPlan whole = plan_of({{"mode", "auto"}}, scene, small);
+      EXPECT_EQ(part.decisions.front(),
+                (Decision{"sms", std::to_string(sms), "asked for, of 132 multiprocessors"}));
+      part.decisions.erase(part.decisions.begin());
+      EXPECT_EQ(part.decisions, whole.decisions);
+      EXPECT_EQ(part.builder, whole.builder);
+      EXPECT_EQ(part.limits.sms, sms);
+    }
+  }
+  // A smaller GPU renders for longer, by which a tree's builder is chosen.
+  const auto builder = [](const char* sms) {
+    const auto all = plan_of({{"sms", sms}}, mesh(), gpu()).decisions;
+    return std::ranges::find(all, "builder", &Decision::option)->reason;
+  };
+  EXPECT_NE(builder("8"), builder("132"));
+  EXPECT_TRUE(plan_of({{"sms", "0"}}, mesh(), gpu()).limits == DeviceLimits());
+  expect_refused({{"sms", "133"}}, mesh(), gpu(),
+                 "--sms 133: the GPU has 132 multiprocessors; expected at most as many");
+}
+
+TEST(ExecutionPlan, SeesBlocksOfTheSharedMemoryThatIsAskedFor) {
+  for (const int kib : {48, 64, 90, 91, 100, 227}) {
+    SCOPED_TRACE(kib);
+    const Choices limit = {{"mode", "megakernel"}, {"shared-memory-max", std::to_string(kib)}};
+    const bool has_room = kib >= 91;
+    for (const SceneProperties& scene : {mesh(), forest()}) {
+      ExecutionPlan part = plan_of(limit, scene, gpu());
+      const ExecutionPlan small = plan_of(mega(), scene, gpu(static_cast<std::size_t>(kib)));
+      EXPECT_EQ(part.decisions.front(),
+                (Decision{"shared-memory-max", std::to_string(kib), "asked for, of 227 KiB"}));
+      part.decisions.erase(part.decisions.begin());
+      EXPECT_EQ(part.decisions, small.decisions);
+      EXPECT_EQ(part.megakernel == MegakernelKind::sort, has_room);
+    }
+    EXPECT_EQ(
+        plan_of({{"shared-memory-max", std::to_string(kib)}}, mesh(), gpu()).finishes_in_blocks,
+        has_room);
+  }
+  expect_refused(
+      mega({{"kernel", "sort"}, {"shared-memory-max", "64"}}), mesh(), gpu(),
+      "--kernel sort: expected --accel cwbvh, --work persistent and a device whose blocks "
+      "may have 91 KiB");
+  expect_refused({{"shared-memory-max", "228"}}, mesh(), gpu(),
+                 "--shared-memory-max 228: a block of this GPU has at most 227 KiB");
+  const SceneProperties many = changed(spheres(8000), [](auto& s) { s.scan_bytes = 64000; });
+  expect_refused(
+      {{"scene-memory", "shared"}, {"accel", "brute"}, {"shared-memory-max", "48"}}, many, gpu(),
+      "--scene-memory shared: the scene's 8000 spheres take 64000 bytes; a block of this "
+      "device has at most 49152");
+}
+
 TEST(ExecutionPlan, WhatADeviceLacksIsRefused) {
   DeviceProperties small = gpu();
   small.block_threads_max = 512;

@@ -106,11 +106,11 @@ class CompactRun {
   std::map<std::tuple<std::uint64_t, std::uint32_t, std::uint32_t>, CopyTimes> copies_;
 };
 
-std::unique_ptr<CompactionDevice> make_device(const DeviceChoice& choice) {
+std::unique_ptr<CompactionDevice> make_device([[maybe_unused]] const DeviceInfo& info) {
 #ifdef PTEXP_CUDA
-  if (choice.kind == DeviceChoice::Kind::cuda) return make_compaction_cuda(choice.index);
+  if (info.choice.kind == DeviceChoice::Kind::cuda)
+    return make_compaction_cuda(info.choice.index, info.sms);
 #endif
-  (void)choice;  // without CUDA there is only one
   return make_compaction_cpu();
 }
 
@@ -131,8 +131,8 @@ void print_row(const CompactMeasurement& m) {
 }  // namespace
 
 int compact_command(const CompactCommand& command) {
-  const DeviceInfo info = choose_device(command.device);
-  const auto device = make_device(info.choice);
+  const DeviceInfo info = limited(choose_device(command.device), command.limits);
+  const auto device = make_device(info);
   CompactRun run(command, info, *device);
   Attempts attempts;
   bool has_csv = !command.csv.empty();

@@ -43,7 +43,8 @@ std::vector<DeviceInfo> find_devices(Options& options, const GivenOptions& given
   std::vector<DeviceInfo> devices = choose_render_devices(options, given, &ranks);
   if (options.quiet) return devices;
   for (const DeviceInfo& device : devices) {
-    print("device {}: {} ({})\n", to_string(device.choice), device.name, device.detail);
+    print("device {}: {} ({})\n", to_string(device.choice), limited(device, options.limits).name,
+          device.detail);
   }
   const bool is_gpu = devices.front().choice.kind == Kind::cuda;
   const std::size_t gpus = wanted == Kind::automatic && is_gpu ? list_devices().size() - 1 : 0;

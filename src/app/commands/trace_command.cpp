@@ -153,7 +153,7 @@ void check_size(const RaysCommand& command) {
 int trace_command(const TraceCommand& given) {
   TraceCommand command = given;
   if (command.accel == AccelKind::automatic) command.accel = AccelKind::cwbvh;
-  const DeviceInfo device = choose_device(command.device);
+  const DeviceInfo device = limited(choose_device(command.device), command.limits);
   check_command(command, device);
   const SceneData scene = load_triangles(command.mesh);
   const RaySet rays = read_rays(command.rays);

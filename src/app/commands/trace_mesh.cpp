@@ -24,7 +24,7 @@ TraceResult trace_tree(const TriangleTreeData& tree, const RaySet& rays, const T
                        [[maybe_unused]] const DeviceInfo& device) {
 #ifdef PTEXP_CUDA
   if (device.choice.kind == DeviceChoice::Kind::cuda)
-    return trace_rays_cuda(tree, rays, runs, device.choice.index);
+    return trace_rays_cuda(tree, rays, runs, device.choice.index, device.sms);
 #endif
   return trace_rays_cpu(tree, rays, runs);
 }
@@ -34,7 +34,7 @@ BuiltTrace build_and_trace(const SceneData& scene, const TreeOptions& options, c
 #ifdef PTEXP_CUDA
   if (is_device_builder(options.builder))
     return build_and_trace_cuda(scene.meshes, scene.instances, options, rays, runs,
-                                device.choice.index);
+                                device.choice.index, device.sms);
 #endif
   const TriangleTreeData tree = build_triangle_tree(scene.meshes, scene.instances, options);
   return {trace_tree(tree, rays, runs, device), summarize(tree)};

@@ -29,7 +29,7 @@ GpuFacts read_gpu(int device) {
   gpu.problem = problem_of(cudaGetDeviceProperties(&p, device));
   if (!gpu.problem.empty()) return gpu;
   gpu.name = p.name, gpu.major = p.major, gpu.minor = p.minor;
-  gpu.memory = p.totalGlobalMem;
+  gpu.memory = p.totalGlobalMem, gpu.multiprocessors = p.multiProcessorCount;
   gpu.block_shared = p.sharedMemPerBlock, gpu.block_shared_max = p.sharedMemPerBlockOptin;
   std::size_t available = 0, total = 0;
   gpu.problem = problem_of(cudaSetDevice(device));

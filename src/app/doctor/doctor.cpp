@@ -126,6 +126,7 @@ int exit_code(const std::vector<Check>& checks) {
 Json gpu_json(const GpuFacts& gpu) {
   return {{"name", gpu.name},
           {"compute_capability", fmt::format("{}.{}", gpu.major, gpu.minor)},
+          {"multiprocessors", gpu.multiprocessors},
           {"memory_bytes", gpu.memory},
           {"free_memory_bytes", gpu.free_memory},
           {"block_shared_bytes", gpu.block_shared},

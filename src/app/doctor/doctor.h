@@ -13,8 +13,9 @@
 namespace pt {
 
 struct GpuFacts {
-  std::string name;                                      ///< e.g. "NVIDIA H200"
-  int major = 0, minor = 0;                              ///< compute capability
+  std::string name;          ///< e.g. "NVIDIA H200"
+  int major = 0, minor = 0;  ///< compute capability
+  int multiprocessors = 0;
   std::uint64_t memory = 0, free_memory = 0;             ///< bytes
   std::uint64_t block_shared = 0, block_shared_max = 0;  ///< bytes: as it is, and if asked for
   std::string problem;  ///< why no kernel of this program runs there; empty: one does

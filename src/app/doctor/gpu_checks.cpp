@@ -59,14 +59,15 @@ Check check_runtime(const Machine& machine) {
           ""};
 }
 
-Check check_gpu(const GpuFacts& gpu, std::size_t index) {
+Check check_gpu(const GpuFacts& gpu, std::size_t index, int driver) {
   constexpr double gib = 1 << 30, kib = 1 << 10;
+  const char* const parts = driver < 12040 ? " (all: --sms wants a driver for CUDA 12.4)" : "";
   Check check{
       fmt::format("GPU cuda:{}", index), Health::ok,
-      fmt::format("{}, compute capability {}.{}, {:.1f} GiB free of {:.1f} GiB, {:.0f} KiB "
-                  "of shared memory per block (at most {:.0f} KiB)",
-                  gpu.name, gpu.major, gpu.minor, static_cast<double>(gpu.free_memory) / gib,
-                  static_cast<double>(gpu.memory) / gib,
+      fmt::format("{}, {} multiprocessors{}, compute capability {}.{}, {:.1f} GiB free of {:.1f} "
+                  "GiB, {:.0f} KiB of shared memory per block (at most {:.0f} KiB)",
+                  gpu.name, gpu.multiprocessors, parts, gpu.major, gpu.minor,
+                  static_cast<double>(gpu.free_memory) / gib, static_cast<double>(gpu.memory) / gib,
                   static_cast<double>(gpu.block_shared) / kib,
                   static_cast<double>(gpu.block_shared_max) / kib),
       ""};
@@ -158,7 +159,7 @@ void add_gpu_checks(const Machine& machine, std::vector<Check>& checks) {
                       "--device cpu works"});
   }
   for (std::size_t i = 0; i < cuda.gpus.size(); ++i) {
-    checks.push_back(check_gpu(cuda.gpus[i], i));
+    checks.push_back(check_gpu(cuda.gpus[i], i, cuda.driver));
     const std::string architectures = architectures_of(machine.build);
     if (cuda.gpus[i].major > 0) checks.push_back(check_code(cuda.gpus[i], i, architectures));
   }

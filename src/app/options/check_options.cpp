@@ -222,6 +222,8 @@ void check_parts(const Options& o, const GivenOptions& given) {
     refuse("--device " + to_string(o.device), "--mode serial has one thread; expected one device");
   if (has_several && o.counters)
     refuse("--counters", "reads those of one device; --device names several");
+  if (o.limits.sms > 0 && o.counters)
+    refuse("--counters", "reads those of a whole GPU; expected no --sms");
   if (o.integrator == IntegratorKind::mlt && (has_several || has_file))
     refuse(has_several ? "--device " + to_string(o.device) : "--checkpoint " + o.checkpoint.file,
            "the chains of --integrator mlt walk over the whole image and have no state that could "

@@ -153,6 +153,17 @@ OptionEntry path_bytes_entry() {
                [](int x) { return std::to_string(x); });
 }
 
+/// 0 stands for an option that is not given.
+OptionEntry limit(std::string name, int DeviceLimits::*field) {
+  return value(
+      std::move(name), OptionForm::number,
+      "N", [field](auto& options) -> auto& { return options.limits.*field; },
+      [](const std::string& n, const std::string& s) {
+        return static_cast<int>(parse_integer(n, s, 0, 65535));
+      },
+      [](int x) { return x == 0 ? std::string() : std::to_string(x); });
+}
+
 /// Adds a definition to those given before.
 OptionEntry define_entry() {
   OptionEntry entry{.name = "define", .form = OptionForm::list, .placeholder = "NAME=VALUE"};
@@ -266,6 +277,16 @@ void add_execution(std::vector<OptionEntry>& list) {
       .only(parallel, cuda, "cuda")
       .add(integer("threads", &Options::threads, 0, 65535), "CPU threads; 0: one per core")
       .only(parallel, cpu)
+      .add(limit("sms", &DeviceLimits::sms),
+           "CUDA: multiprocessors of each GPU to render on, by a green\n"
+           "context (CUDA 12.4); memory and L2 cache stay whole. 0: all")
+      .expert()
+      .only(parallel, cuda, "", "on a CPU, --threads sets the size")
+      .add(limit("shared-memory-max", &DeviceLimits::shared_memory_max),
+           "CUDA: KiB of shared memory that a block may have, as on a\n"
+           "smaller GPU (99 on GeForce); 0: what the GPU has")
+      .expert()
+      .only(parallel, cuda)
       .add(choice("accel", &Options::accel),
            "Acceleration structure: none (every primitive is tested), a\n"
            "binary BVH, a compressed 8-wide BVH (triangles only), or\n"

@@ -76,6 +76,10 @@ Compaction parse_strategy(const std::string& text) {
   return parse_name<Compaction>("strategy", text);
 }
 
+int parse_sms(const std::string& text) {
+  return static_cast<int>(parse_integer("sms", text, 0, 65535));
+}
+
 bool parse_cold(const std::string& text) {
   if (text != "cold" && text != "warm") refuse_value("cache", text, "expected cold or warm");
   return text == "cold";
@@ -98,6 +102,8 @@ std::vector<SubcommandOption<TraceCommand>> trace_options() {
        [](C& c, S v) { c.builder = parse_name<TreeBuilder>("builder", v); }},
       {"device", "D [auto]", "auto, cpu, cuda, cuda:N",
        [](C& c, S v) { c.device = parse_device("device", v); }},
+      {"sms", "N [0]", "On CUDA: multiprocessors to use, by a green context; 0: all",
+       [](C& c, S v) { c.limits.sms = parse_sms(v); }},
       {"variant", "KIND [auto]", "On CUDA: auto, threads, persistent, beam",
        [](C& c, S v) { c.runs.variant = parse_name<TraceVariant>("variant", v); }},
       {"repeat", "N [1]", "Measured runs",
@@ -152,6 +158,8 @@ std::vector<SubcommandOption<CompactCommand>> compact_options() {
        [](C& c, S v) { c.runs.cold = parse_cold(v); }},
       {"device", "D [auto]", "auto, cpu, cuda, cuda:N",
        [](C& c, S v) { c.device = parse_device("device", v); }},
+      {"sms", "N [0]", "On CUDA: multiprocessors to use, by a green context; 0: all",
+       [](C& c, S v) { c.limits.sms = parse_sms(v); }},
       {"repeat", "N [10]", "Measured runs, each of many passes",
        [](C& c, S v) { c.runs.repeat = parse_runs("repeat", v, 1); }},
       {"warmup", "N [3]", "Warm-up runs, not measured",

@@ -31,6 +31,7 @@ struct TraceCommand {
   AccelKind accel = AccelKind::automatic;
   TreeBuilder builder = TreeBuilder::automatic;
   DeviceChoice device;
+  DeviceLimits limits;
   TraceRuns runs;
   bool quiet = false;
   std::string command_line;  ///< for the record: the program's arguments
@@ -58,6 +59,7 @@ struct CompactCommand {
   std::vector<Compaction> strategies = all_strategies();
   std::uint32_t run_length = 1;
   DeviceChoice device;
+  DeviceLimits limits;
   MeasuredRuns runs{3, 10, true};
   std::string csv;  ///< file to append a row to for each measurement; empty: none
   bool quiet = false;

@@ -70,7 +70,7 @@ inline constexpr std::pair<const char*, double ProcessTimes::*> process_parts[] 
 
 /// Version of the JSON and the CSV. Raise it, and change docs/statistics.md, whenever a field is
 /// added or removed or changes its name, unit or meaning.
-inline constexpr int report_schema_version = 14;
+inline constexpr int report_schema_version = 15;
 
 /// Every repeat ran, and the last one had all its samples.
 bool is_complete(const Options& options, const RenderReport& report);

@@ -8,6 +8,7 @@
 
 #include "common/cuda/cuda_check.cuh"
 #include "common/cuda/cuda_memory.cuh"
+#include "common/cuda/used_gpu.cuh"
 #include "common/error/host_memory.h"
 
 namespace pt {
@@ -103,7 +104,7 @@ void CudaUpload::copy(void* to, const void* from, std::uint64_t size_bytes) {
 
 /// Every piece that is the lane's.
 void CudaUpload::copy_every(int lane_index, char* to, const char* from, std::uint64_t size_bytes) {
-  check_cuda(cudaSetDevice(device_), "cudaSetDevice");  // of this thread
+  reach_gpu(device_);
   const Lane& lane = lanes_[lane_index];
   int turn = 0;
   for (std::uint64_t at = lane_index * piece_bytes; at < size_bytes; at += lanes * piece_bytes) {

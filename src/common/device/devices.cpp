@@ -6,6 +6,8 @@
 
 #include "common/device/cpu/cpu_renderer.h"
 #include "common/error/error.h"
+#include "common/options/option_names.h"
+#include "common/plan/plan_steps.h"
 
 namespace pt {
 namespace {
@@ -80,6 +82,18 @@ DeviceInfo choose_device(const DeviceChoice& choice) {
     }
   }
   throw Error(fmt::format("--device cuda:{}: no such CUDA device; {}", choice.index, about_gpus));
+}
+
+DeviceInfo limited(DeviceInfo device, const DeviceLimits& limits) {
+  if (limits.sms > 0 && !device.properties.is_cuda)
+    throw Error(fmt::format("--sms {}: has no effect on the device {}; it applies to cuda",
+                            limits.sms, to_string(device.choice.kind)));
+  const int all = device.properties.multiprocessors;
+  device.properties = limit_device(device.properties, limits);
+  device.sms = limits.sms;
+  if (limits.sms > 0 && limits.sms < all)
+    device.name += fmt::format(", {} of {} multiprocessors", limits.sms, all);
+  return device;
 }
 
 DeviceOpening::DeviceOpening([[maybe_unused]] const std::vector<DeviceInfo>& devices) {

@@ -16,6 +16,7 @@ struct DeviceInfo {
   std::string name;             ///< e.g. "NVIDIA H200"
   std::string detail;           ///< e.g. "132 multiprocessors, 139.8 GiB, compute capability 9.0"
   DeviceProperties properties;  ///< what a plan depends on
+  int sms = 0;                  ///< multiprocessors to use, 0: all
 };
 
 /// The CPU first, then every usable CUDA device. Never throws: a broken driver means no GPU.
@@ -27,6 +28,10 @@ DeviceInfo choose_device(const DeviceChoice& choice);
 
 /// The same for a choice that may name several. Those of the CPU share `threads` (0: all).
 std::vector<DeviceInfo> choose_devices(const DeviceChoice& choice, int threads);
+
+/// As DeviceLimits have it, which its name then says. Throws Error for more than there is, and for
+/// limits of a CPU.
+DeviceInfo limited(DeviceInfo device, const DeviceLimits& limits);
 
 /// Appends the usable CUDA devices; returns what to tell a user who misses one. Only in a build
 /// with CUDA.

@@ -137,10 +137,19 @@ struct ImageSettings {
   std::uint64_t bootstrap = 0;           ///< paths before the chains, 0: automatic
 };
 
+/// A smaller device than the one that is there, for experiments (CUDA).
+struct DeviceLimits {
+  int sms = 0;                ///< multiprocessors, 0: all
+  int shared_memory_max = 0;  ///< KiB of shared memory that a block may have, 0: the device's own
+
+  bool operator==(const DeviceLimits&) const = default;
+};
+
 /// How it is executed, as far as the user alone decides: the plan takes these settings over. They
 /// do not change the image.
 struct ExecutionSettings {
-  int threads = 0;                               ///< CPU threads, 0: all
+  int threads = 0;  ///< CPU threads, 0: all
+  DeviceLimits limits;
   TreeBuilder builder = TreeBuilder::automatic;  ///< builds trees over triangles
   Work work = Work::persistent;                  ///< megakernel
   BlockSize block;                               ///< megakernel, threads per block

@@ -44,10 +44,11 @@ constexpr const char* asked = "asked for";
 class Planner {
  public:
   Planner(const Options& options, const SceneProperties& scene, const DeviceProperties& device)
-      : o_(options), scene_(scene), device_(device) {
+      : o_(options), scene_(scene), device_(limit_device(device, options.limits)) {
     static_cast<ImageSettings&>(plan_) = options;
     static_cast<ExecutionSettings&>(plan_) = options;
     if (!device.is_cuda) plan_.threads = device.threads;
+    if (device.is_cuda) note_limits(device);
   }
 
   ExecutionPlan plan() {
@@ -87,6 +88,16 @@ class Planner {
 
   void decide(const char* option, std::string value, std::string reason) {
     plan_.decisions.push_back({option, std::move(value), std::move(reason)});
+  }
+
+  void note_limits(const DeviceProperties& whole) {
+    const DeviceLimits& limits = o_.limits;
+    if (limits.sms > 0)
+      decide("sms", std::to_string(limits.sms),
+             fmt::format("asked for, of {} multiprocessors", whole.multiprocessors));
+    if (limits.shared_memory_max > 0)
+      decide("shared-memory-max", std::to_string(limits.shared_memory_max),
+             fmt::format("asked for, of {} KiB", whole.block_shared_bytes / 1024));
   }
 
   void choose_mode() {
@@ -391,7 +402,7 @@ class Planner {
 
   const Options& o_;
   const SceneProperties& scene_;
-  const DeviceProperties& device_;
+  const DeviceProperties device_;  ///< within the limits
   ExecutionPlan plan_;
 };
 

@@ -215,6 +215,21 @@ KernelNeed need_of(const ExecutionPlan& plan, const Options& o, const ScenePrope
   return need;
 }
 
+DeviceProperties limit_device(DeviceProperties device, const DeviceLimits& limits) {
+  if (!device.is_cuda) return device;
+  if (limits.sms > device.multiprocessors)
+    throw Error(fmt::format("--sms {}: the GPU has {} multiprocessors; expected at most as many",
+                            limits.sms, device.multiprocessors));
+  const std::size_t shared_kib = device.block_shared_bytes / 1024;
+  const auto shared_max = static_cast<std::size_t>(limits.shared_memory_max);
+  if (shared_max > shared_kib)
+    throw Error(fmt::format("--shared-memory-max {}: a block of this GPU has at most {} KiB",
+                            shared_max, shared_kib));
+  if (limits.sms > 0) device.multiprocessors = limits.sms;
+  if (shared_max > 0) device.block_shared_bytes = shared_max * 1024;
+  return device;
+}
+
 void check_options_for_scene(const Options& options, const SceneProperties& scene) {
   const std::string why = why_general(options, scene);
   if (options.kernel_set == KernelSet::specialized && !why.empty())

@@ -9,6 +9,9 @@
 
 namespace pt {
 
+/// The device as the limits let a plan see it. Throws Error for more than there is.
+DeviceProperties limit_device(DeviceProperties device, const DeviceLimits& limits);
+
 /// Before anything is chosen. Throws Error.
 void check_options_for_scene(const Options& options, const SceneProperties& scene);
 

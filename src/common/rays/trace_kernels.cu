@@ -5,6 +5,7 @@
 #include "common/accel/traverse_bvh2.h"
 #include "common/cuda/cuda_check.cuh"
 #include "common/cuda/cuda_memory.cuh"
+#include "common/cuda/used_gpu.cuh"
 #include "common/rays/trace_kernels.cuh"
 
 namespace pt {
@@ -164,13 +165,10 @@ PersistentKernel choose_persistent(RayType type, const TriangleTree& tree) {
 
 int persistent_blocks(RayType type, const TriangleTree& tree) {
   const auto [kernel, threads] = choose_persistent(type, tree);
-  int device = 0, multiprocessors = 0, per_multiprocessor = 0;
-  check_cuda(cudaGetDevice(&device), "cudaGetDevice");
-  check_cuda(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device),
-             "cudaDeviceGetAttribute");
+  int per_multiprocessor = 0;
   check_cuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&per_multiprocessor, kernel, threads, 0),
              "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
-  return multiprocessors * per_multiprocessor;
+  return used_multiprocessors() * per_multiprocessor;
 }
 
 void launch_trace(TraceVariant variant, RayType type, const TriangleTree& tree,

@@ -39,10 +39,11 @@ struct TraceResult {
 /// On all threads of the processor.
 TraceResult trace_rays_cpu(const TriangleTreeData& tree, const RaySet& rays, const TraceRuns& runs);
 
-/// On the CUDA device `index`; only in a build with CUDA. Throws Error where it has too little
-/// memory, or where the tree is not one that the variant can traverse.
+/// On `sms` multiprocessors (0: all) of the CUDA device `index`; only in a build with CUDA. Throws
+/// Error where it has too little memory, or where the tree is not one that the variant can
+/// traverse.
 TraceResult trace_rays_cuda(const TriangleTreeData& tree, const RaySet& rays, const TraceRuns& runs,
-                            int index);
+                            int index, int sms = 0);
 
 struct BuiltTrace {
   TraceResult result;
@@ -53,7 +54,7 @@ struct BuiltTrace {
 /// Error also for invalid geometry.
 BuiltTrace build_and_trace_cuda(std::span<const Mesh> meshes, std::span<const Instance> instances,
                                 const TreeOptions& tree, const RaySet& rays, const TraceRuns& runs,
-                                int index);
+                                int index, int sms = 0);
 
 inline constexpr float hit_tolerance = 1e-5f;  ///< of t, relative
 

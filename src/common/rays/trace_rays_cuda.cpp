@@ -3,6 +3,7 @@
 #include "common/accel/build_cuda/device_triangle_tree.cuh"
 #include "common/cuda/cuda_check.cuh"
 #include "common/cuda/cuda_memory.cuh"
+#include "common/cuda/used_gpu.cuh"
 #include "common/error/error.h"
 #include "common/rays/trace_kernels.cuh"
 #include "common/rays/trace_rays.h"
@@ -60,17 +61,17 @@ TraceResult trace(const TriangleTree& view, const RaySet& set, const TraceRuns& 
 }  // namespace
 
 TraceResult trace_rays_cuda(const TriangleTreeData& tree, const RaySet& rays, const TraceRuns& runs,
-                            int index) {
-  check_cuda(cudaSetDevice(index), "cudaSetDevice");
+                            int index, int sms) {
+  const UsedGpu device(index, sms);
   CudaMemory memory;
   return trace(upload(tree, memory), rays, runs, memory);
 }
 
 BuiltTrace build_and_trace_cuda(std::span<const Mesh> meshes, std::span<const Instance> instances,
                                 const TreeOptions& tree, const RaySet& rays, const TraceRuns& runs,
-                                int index) {
+                                int index, int sms) {
   check_geometry(meshes, instances);
-  check_cuda(cudaSetDevice(index), "cudaSetDevice");
+  const UsedGpu device(index, sms);
   CudaMemory memory;
   const DeviceTriangleTree built = build_device_triangle_tree(meshes, instances, tree, memory);
   return {trace(built.view, rays, runs, memory), built.summary};

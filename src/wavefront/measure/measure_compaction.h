@@ -96,6 +96,6 @@ std::unique_ptr<CompactionDevice> make_compaction_cpu();
 
 /// On the CUDA device `index`; only in a build with CUDA. The passes of a time are one CUDA graph,
 /// so that the host's launches do not count; times between two events.
-std::unique_ptr<CompactionDevice> make_compaction_cuda(int index);
+std::unique_ptr<CompactionDevice> make_compaction_cuda(int index, int sms = 0);
 
 }  // namespace pt

@@ -2,6 +2,7 @@
 
 #include "common/cuda/cuda_check.cuh"
 #include "common/cuda/cuda_memory.cuh"
+#include "common/cuda/used_gpu.cuh"
 #include "wavefront/compaction/compaction_cuda.h"
 #include "wavefront/measure/measure_compaction.h"
 #include "wavefront/stage_kernel.cuh"
@@ -97,15 +98,12 @@ class Slots {
     check_cuda(
         cudaMemset(queues_, 0xff, stride() * plan.sets * queues_per_set() * sizeof(std::uint32_t)),
         "cudaMemset");
-    int device = 0, multiprocessors = 0, blocks = 0;
-    check_cuda(cudaGetDevice(&device), "cudaGetDevice");
-    check_cuda(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device),
-               "cudaDeviceGetAttribute");
+    int blocks = 0;
     check_cuda(
         cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, append_waiting<2>, block_threads, 0),
         "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
     const std::uint32_t wanted = (slot_count_ + block_threads - 1) / block_threads;
-    grid_ = std::min(wanted, static_cast<std::uint32_t>(blocks * multiprocessors));
+    grid_ = std::min(wanted, static_cast<std::uint32_t>(blocks * used_multiprocessors()));
   }
 
   CompactionRequest request(std::uint32_t pass) const {
@@ -155,7 +153,7 @@ class Slots {
 
 class CompactionCuda : public CompactionDevice {
  public:
-  explicit CompactionCuda(int index) : stream_(on_device(index)) {}
+  CompactionCuda(int index, int sms) : device_(index, sms) {}
 
   std::vector<CopyWay> copy_ways() const override { return {CopyWay::memcpy, CopyWay::kernel}; }
   /// The graph of a time goes through all sets.
@@ -213,11 +211,6 @@ class CompactionCuda : public CompactionDevice {
   }
 
  private:
-  static std::unique_ptr<Stream> on_device(int index) {
-    check_cuda(cudaSetDevice(index), "cudaSetDevice");
-    return std::make_unique<Stream>();
-  }
-
   static std::vector<std::uint32_t> download(const std::uint32_t* from, std::size_t count) {
     std::vector<std::uint32_t> values(count);
     check_cuda(cudaMemcpy(values.data(), from, count * sizeof *from, cudaMemcpyDeviceToHost),
@@ -245,13 +238,14 @@ class CompactionCuda : public CompactionDevice {
     return times_ms;
   }
 
-  std::unique_ptr<Stream> stream_;
+  const UsedGpu device_;
+  const std::unique_ptr<Stream> stream_ = std::make_unique<Stream>();
 };
 
 }  // namespace
 
-std::unique_ptr<CompactionDevice> make_compaction_cuda(int index) {
-  return std::make_unique<CompactionCuda>(index);
+std::unique_ptr<CompactionDevice> make_compaction_cuda(int index, int sms) {
+  return std::make_unique<CompactionCuda>(index, sms);
 }
 
 }  // namespace pt

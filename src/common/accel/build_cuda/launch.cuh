@@ -7,6 +7,7 @@
 #include "common/accel/build/wide/wide_children.h"
 #include "common/accel/build_cuda/kernels.cuh"
 #include "common/cuda/cuda_check.cuh"
+#include "common/cuda/used_gpu.cuh"
 
 namespace pt::device_build {
 
@@ -20,13 +21,10 @@ inline unsigned blocks_for(std::uint64_t count) {
 /// As many blocks as are resident at once, for kernels that loop, but no more than needed.
 template <class Kernel>
 unsigned resident_blocks(Kernel kernel, std::uint64_t count, int block = block_size) {
-  int device = 0, processors = 0, per_processor = 0;
-  check_cuda(cudaGetDevice(&device), "cudaGetDevice");
-  check_cuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device),
-             "cudaDeviceGetAttribute");
+  int per_processor = 0;
   check_cuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&per_processor, kernel, block, 0),
              "occupancy");
-  const auto resident = static_cast<unsigned>(std::max(1, processors * per_processor));
+  const auto resident = static_cast<unsigned>(std::max(1, used_multiprocessors() * per_processor));
   return std::clamp(static_cast<unsigned>((count + block - 1) / block), 1u, resident);
 }
 

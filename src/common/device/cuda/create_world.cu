@@ -1,5 +1,6 @@
 #include "common/cuda/cuda_check.cuh"
 #include "common/cuda/cuda_memory.cuh"
+#include "common/cuda/used_gpu.cuh"
 #include "common/device/cuda/create_world.h"
 
 namespace pt {
@@ -13,7 +14,7 @@ __global__ void create_world(SphereWorld* world, SphereWorldKind kind, std::uint
 
 SphereWorldCreator create_world_on(int device) {
   return [device](SphereWorld& world, SphereWorldKind kind, std::uint32_t count) {
-    check_cuda(cudaSetDevice(device), "cudaSetDevice");
+    reach_gpu(device);
     CudaMemory memory;
     const std::uint32_t capacity = world.capacity;
     SphereWorld on_device{memory.allocate<Sphere>("spheres", capacity),

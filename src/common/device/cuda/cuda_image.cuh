@@ -5,6 +5,7 @@
 
 #include "common/cuda/cuda_check.cuh"
 #include "common/cuda/cuda_memory.cuh"
+#include "common/cuda/used_gpu.cuh"
 #include "common/image/image.h"
 
 namespace pt {
@@ -17,13 +18,13 @@ class CudaImage : public DeviceImage {
         floats_(std::size_t{3} * this->frame().width * this->frame().height),
         rgb_(memory_.allocate<float>("image", floats_)),
         device_(device) {}
-  ~CudaImage() override { cudaSetDevice(device_); }  // whose memory is freed
+  ~CudaImage() override { reach_gpu(device_); }  // whose memory is freed
 
   float* rgb() const override { return rgb_; }
   int device() const override { return device_; }
   std::vector<float> download() const override {
     std::vector<float> rgb(floats_);
-    check_cuda(cudaSetDevice(device_), "cudaSetDevice");
+    reach_gpu(device_);
     check_cuda(cudaMemcpy(rgb.data(), rgb_, floats_ * sizeof(float), cudaMemcpyDeviceToHost),
                "downloading the image");
     return rgb;

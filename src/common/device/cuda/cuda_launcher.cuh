@@ -15,8 +15,10 @@
 #include <vector>
 
 #include "common/cuda/cuda_check.cuh"
+#include "common/cuda/used_gpu.cuh"
 #include "common/device/cuda/counter_session_cuda.h"
 #include "common/device/cuda/stage_clock.h"
+#include "common/options/options.h"
 #include "common/render/renderer.h"
 
 namespace pt {
@@ -34,8 +36,9 @@ class ProfilerRange {
 
 class CudaLauncher {
  public:
-  /// Makes `device` the thread's device. Throws Error where it is not there.
-  explicit CudaLauncher(int device);
+  /// Makes `device`, as far as the limits let it, the thread's device. Throws Error where it is not
+  /// there.
+  CudaLauncher(int device, const DeviceLimits& limits);
   ~CudaLauncher();
   CudaLauncher(const CudaLauncher&) = delete;
   CudaLauncher& operator=(const CudaLauncher&) = delete;
@@ -76,7 +79,11 @@ class CudaLauncher {
   /// What follows belongs to this wave; -1: to none.
   void set_wave(int wave) { wave_ = wave; }
 
-  int device() const { return device_; }
+  /// What a thread does before it uses the device.
+  void use_device() const { device_.use(); }
+  int device() const { return device_.index(); }
+  /// ", 16 of 132 multiprocessors" of a part of a GPU, else empty.
+  std::string part_text() const { return device_.part_text(); }
   cudaStream_t stream() const { return stream_; }
   /// In the device's memory, where stages note their times.
   StageClock* clock() const { return clock_; }
@@ -88,7 +95,7 @@ class CudaLauncher {
   /// The time that the device's context and the stream took to make.
   double opening_ms() const { return opening_ms_; }
 
-  const cudaDeviceProp properties_;
+  const cudaDeviceProp properties_;  ///< within the limits
 
  private:
   friend class BlockWavefronts;  // another user of the launches
@@ -118,7 +125,7 @@ class CudaLauncher {
                      std::size_t shared_bytes, void** arguments);
   void note_kernel(const char* name, const void* kernel, dim3 block, std::size_t shared_bytes);
 
-  int device_;
+  UsedGpu device_;
   double opening_ms_ = 0;
   cudaStream_t stream_ = nullptr;
   cudaEvent_t start_ = nullptr, stop_ = nullptr;
@@ -130,8 +137,5 @@ class CudaLauncher {
   /// The names of kernels; one kernel may run as several stages.
   std::vector<std::pair<const void*, std::string>> noted_kernels_;
 };
-
-/// Throws Error where there is no such device.
-cudaDeviceProp read_properties(int device);
 
 }  // namespace pt

@@ -9,19 +9,27 @@
 
 namespace pt {
 
-cudaDeviceProp read_properties(int device) {
+namespace {
+
+cudaDeviceProp read_properties(int device, const DeviceLimits& limits) {
   cudaDeviceProp properties{};
   check_cuda(cudaGetDeviceProperties(&properties, device), "cudaGetDeviceProperties");
+  if (limits.sms > 0) properties.multiProcessorCount = limits.sms;
+  const auto shared_max = std::size_t{1024} * static_cast<std::size_t>(limits.shared_memory_max);
+  if (shared_max > 0)
+    properties.sharedMemPerBlockOptin = std::min(properties.sharedMemPerBlockOptin, shared_max);
   return properties;
 }
 
-CudaLauncher::CudaLauncher(int device) : properties_(read_properties(device)), device_(device) {
+}  // namespace
+
+CudaLauncher::CudaLauncher(int device, const DeviceLimits& limits)
+    : properties_(read_properties(device, limits)), device_(device, limits.sms) {
   const WallTimer timer;
-  check_cuda(cudaSetDevice(device), "cudaSetDevice");
   check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreate");
   check_cuda(cudaEventCreate(&start_), "cudaEventCreate");
   check_cuda(cudaEventCreate(&stop_), "cudaEventCreate");
-  opening_ms_ = timer.ms();
+  opening_ms_ = device_.opening_ms() + timer.ms();
 }
 
 CudaLauncher::~CudaLauncher() {
@@ -121,7 +129,10 @@ void CudaLauncher::time_batch(RenderRun& run, const std::function<void()>& enque
 }
 
 HardwareCounters CudaLauncher::count_launches(const std::function<void()>& work) {
-  counters_ = std::make_unique<CounterSession>(device_);
+  if (device_.is_part())
+    throw CountersUnavailable(
+        "--sms: counters are read of whole GPUs; CUPTI counts in green contexts from CUDA 13.3 on");
+  counters_ = std::make_unique<CounterSession>(device());
   const std::shared_ptr<void> end(nullptr, [&](void*) { counters_.reset(); });
   return counters_->count(work);
 }

@@ -30,7 +30,7 @@ constexpr std::uint64_t first_paths = std::uint64_t{1} << 24;  // of a scene of 
 
 CudaRenderer::CudaRenderer(const ExecutionPlan& plan, const SceneData& scene, int device)
     : FilmRenderer(plan, scene),
-      CudaLauncher(device),
+      CudaLauncher(device, plan.limits),
       traits_(scene.traits),
       primitive_count_(scene.primitive_count()),
       half_spheres_(scene.half_spheres) {
@@ -109,7 +109,7 @@ void CudaRenderer::allocate_film() {
 }
 
 HardwareCounters CudaRenderer::count_hardware() {
-  check_cuda(cudaSetDevice(device()), "cudaSetDevice");
+  use_device();
   const std::uint64_t pixels = image_window().pixel_count();
   const int count = batch_samples(plan_.spp, pixels, batch_paths());
   const SampleBuffer batch{samples(), image_window(), 0, static_cast<std::uint32_t>(count)};
@@ -209,7 +209,7 @@ void CudaRenderer::develop_into(float* rgb) {
 // That of Markov chains may be smaller.
 Image CudaRenderer::image() {
   if (!develops_here()) return FilmRenderer::image();
-  check_cuda(cudaSetDevice(device()), "cudaSetDevice");
+  use_device();
   const WallTimer transfer;
   Image image = blank_image();
   static_assert(sizeof(Sample) >= 3 * sizeof(float));
@@ -221,7 +221,7 @@ Image CudaRenderer::image() {
 }
 
 std::unique_ptr<DeviceImage> CudaRenderer::device_image() {
-  check_cuda(cudaSetDevice(device()), "cudaSetDevice");
+  use_device();
   if (develops_here()) {
     auto result = std::make_unique<CudaImage>(frame(), device());
     develop_into(result->rgb());
@@ -253,7 +253,7 @@ bool CudaRenderer::has_same_sizes(const SceneData& scene) {
 
 bool CudaRenderer::set_scene(const SceneData& scene, const SceneChanges& changes) {
   if (changes.move_surfaces() || changes.normals || !has_same_sizes(scene)) return false;
-  check_cuda(cudaSetDevice(device()), "cudaSetDevice");
+  use_device();
   Scene changed = host_view(scene, plan_.width, plan_.height);  // the numbers of the view
   changed.mask_seed = scene_.mask_seed;
   changed.triangles = scene_.triangles;
@@ -294,7 +294,7 @@ void CudaRenderer::store_film(const Film& film) {
 }
 
 void CudaRenderer::begin_render(const Film* film) {
-  check_cuda(cudaSetDevice(device()), "cudaSetDevice");
+  use_device();
   if (load_ms_ == 0) load_kernels();
   if (film != nullptr) store_film(*film);
   reset_clock();
@@ -334,7 +334,7 @@ std::vector<LaneHistogram> CudaRenderer::read_lane_counts() const {
 
 void CudaRenderer::describe(RenderReport& report) const {
   report.device_kind = "cuda";
-  report.device_name = properties_.name;
+  report.device_name = properties_.name + part_text();
   report.driver = driver_;
   report.accel = accel_name(traits_.accel);
   describe_plan(report);
