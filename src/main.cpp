@@ -41,6 +41,8 @@ int execute(const ViewCommand& command) { return view_command(command); }
 
 int execute(const AdviseCommand& command) { return advise_command(command); }
 
+int execute(const CalibrateCommand& command) { return calibrate_command(command); }
+
 int execute(const MeasureCommand&, const Ranks& ranks) {
   if (!ranks.is_first()) return 0;
   if (ranks.count() > 1)

@@ -17,6 +17,7 @@ class Device:
     name: str
     detail: str
     gpus: int = 1  # of the machine
+    calibration: str = "none"  # as --calibration takes it
 
     @property
     def kind(self):

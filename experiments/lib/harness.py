@@ -37,6 +37,7 @@ def session_of(experiment, arguments):
     given = dict(vars(arguments))  # before configurations() adds anything
     program = find_program(arguments.ptexp)
     device = find_device(program, arguments.device)
+    device.calibration = arguments.calibration
     configurations = experiment.configurations(arguments, device)
     names = [configuration.name for configuration in configurations]
     if len(set(names)) < len(names):

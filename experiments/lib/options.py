@@ -31,6 +31,8 @@ def parse_arguments(experiment, command):
         help="seconds for one configuration in one round [%(default)s]")
     add("--single-processes", action="store_true",
         help="start a process of ptexp for each configuration, where else one measures all")
+    add("--calibration", metavar="none|auto|FILE", default="none",
+        help="of ptexp's plans, as its --calibration takes it [%(default)s]")
     add("--list", action="store_true", help="print the command lines and run nothing")
     experiment.add_arguments(parser)
     arguments = parser.parse_args(command)

@@ -1,5 +1,6 @@
 """Finds ptexp and its devices, and runs it."""
 import csv
+import functools
 import hashlib
 import json
 import os
@@ -105,17 +106,25 @@ def check_gpu(experiment, device):
                            "cuda:N")
 
 
-def words_of(configuration, device, repeat, warmup):
-    """ptexp's arguments but for files."""
-    return [*shlex.split(configuration.arguments), "--device", configuration.device or device.choice,
-            "--repeat", str(repeat), "--warmup", str(warmup), "--quiet"]
+@functools.lru_cache(maxsize=None)
+def has_calibrations(program):
+    return "--calibration" in output_of(program, "--help-all")
+
+
+def words_of(program, configuration, device, repeat, warmup):
+    """ptexp's arguments but for files. What the user's cache folder has decides nothing unasked."""
+    words = [*shlex.split(configuration.arguments), "--device", configuration.device or device.choice,
+             "--repeat", str(repeat), "--warmup", str(warmup), "--quiet"]
+    if has_calibrations(configuration.program or str(program)) and "--calibration" not in words:
+        words += ["--calibration", device.calibration]
+    return words
 
 
 def command_line(program, configuration, device, repeat, warmup):
     command = [*shlex.split(configuration.launcher), configuration.program or str(program)]
     if not configuration.renders:
         return [*command, *shlex.split(configuration.arguments)]
-    return [*command, *words_of(configuration, device, repeat, warmup),
+    return [*command, *words_of(program, configuration, device, repeat, warmup),
             "--output", configuration.image or "image.ppm", "--csv", "row.csv", "--stats", "run.json"]
 
 

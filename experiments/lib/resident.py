@@ -87,7 +87,7 @@ class Resident:
 
     def measure(self, configuration, device, repeat, warmup, timeout_s):
         """A Process, as program.measure() returns it."""
-        words = words_of(configuration, device, repeat, warmup)
+        words = words_of(self.program, configuration, device, repeat, warmup)
         if Path(configuration.image).is_absolute():
             words += ["--output", configuration.image]
         if self.process is None or self.process.poll() is not None:

@@ -9,7 +9,7 @@
 All modes give the same bits on a device. docs/python.md is the manual.
 """
 from . import _ptexp
-from ._advise import Advice, AdvisedWay, advise
+from ._advise import Advice, AdvisedWay, Calibration, advise, calibrate
 from ._errors import Error, OptionError, SceneWarning
 from ._image import Image, Layers, denoise, write_image
 from ._measure import ModeComparison, compare_modes, measure, sweep
@@ -27,8 +27,8 @@ def build_info() -> dict:
 
 
 __all__ = [
-    "Advice", "AdvisedWay", "Comparison", "DeviceInfo", "Error", "Hits", "Image", "Layers", "Mesh", "ModeComparison",
-    "OptionError", "Params", "Scene", "SceneInfo", "SceneWarning", "Table", "advise", "build_info", "compare",
-    "compare_modes", "denoise", "devices", "explain", "load", "load_string", "measure", "options", "read_image",
-    "render", "scenes", "sweep", "trace", "write_image",
+    "Advice", "AdvisedWay", "Calibration", "Comparison", "DeviceInfo", "Error", "Hits", "Image", "Layers", "Mesh",
+    "ModeComparison", "OptionError", "Params", "Scene", "SceneInfo", "SceneWarning", "Table", "advise", "build_info",
+    "calibrate", "compare", "compare_modes", "denoise", "devices", "explain", "load", "load_string", "measure",
+    "options", "read_image", "render", "scenes", "sweep", "trace", "write_image",
 ]

@@ -90,3 +90,39 @@ def advise(scene: Union[Scene, PathLike], *, time_limit: float = 60, **options: 
 
 
 show_keywords(advise, "load")
+
+
+class Calibration(NamedTuple):
+    """What :func:`calibrate` returns; prints as `ptexp calibrate` does."""
+
+    file: str  #: in the user's cache folder, which later renders read
+    constants: Dict[str, float]  #: by name, those that were measured
+    kept: List[str]  #: why others keep the values of an H200
+    text: str
+    seconds: float
+
+    def __str__(self) -> str:
+        return self.text.rstrip("\n")
+
+
+def calibrate(*, device: str = "auto", threads: int = 0) -> Calibration:
+    """Measures in at most 30 s the numbers by which auto decides on a device, and stores them.
+
+    Args:
+        device: as for :func:`render`, one device.
+        threads: of the CPU; 0: one per core.
+
+    Returns:
+        The :class:`Calibration`.
+
+    Raises:
+        OptionError, Error: for a device that is not there, or a folder that cannot be written to.
+        KeyboardInterrupt: after Ctrl-C.
+    """
+    given: Dict[str, Any] = {"device": device}
+    if threads:
+        given["threads"] = threads
+    found, raised = _ptexp.calibrate(to_words(given))
+    if raised is not None:
+        raise raised
+    return Calibration(**found)

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/render/calibration.h"
 #include "common/error/error.h"
 #include "common/image/codecs/image_io.h"
 #include "python/arrays.h"
@@ -191,6 +192,34 @@ nb::tuple advise(SceneObject& self, const Words& words, double limit_s) {
   return nb::make_tuple(result, raised);
 }
 
+/// Stores what it measures. None if it was interrupted; and the exception that was raised
+/// meanwhile.
+nb::tuple calibrate(const Words& words) {
+  CalibrationRequest request{.settings = settings_of(words), .stop = {}, .says = {}};
+  std::optional<Calibration> found;
+  std::string file;
+  nb::object raised = run_interruptible(
+      [&](WorkState& state) {
+        request.stop = [&state] { return state.stop.load(); };
+        found = pt::calibrate(request);
+        if (found) file = store_calibration(*found);
+      },
+      nb::none());
+  if (!found) return nb::make_tuple(nb::none(), raised);
+  nb::dict result, constants;
+  for (const PlanConstantInfo& info : plan_constant_table)
+    if (is_measured(found->constants, info.value))
+      constants[info.name] = found->constants.*info.value;
+  nb::list kept;
+  for (const std::string& line : found->kept) kept.append(text(line));
+  result["file"] = text(file);
+  result["constants"] = constants;
+  result["kept"] = kept;
+  result["text"] = text(calibration_text(*found));
+  result["seconds"] = found->seconds;
+  return nb::make_tuple(result, raised);
+}
+
 nb::dict defaults(const SceneObject& self) {
   nb::dict result;
   self.report_defaults(result);
@@ -227,6 +256,7 @@ void add_scene(nb::module_& m) {
                      const std::vector<float>& values) { self.set(parameter, values); })
       .def("get_rows", get_rows)
       .def("set_rows", set_rows);
+  m.def("calibrate", calibrate, nb::arg("words"));
   m.def("load", &SceneObject::load, nb::arg("words"));
   m.def("check_output", check_image_path);  // before any work
 }

@@ -420,6 +420,66 @@ class Advise(CommandLine):
         self.assertEqual(self.files(), [])
 
 
+class Calibrate(CommandLine):
+    RENDER = ("--scene", "spheres", "--threads", "2")
+
+    def with_cache(self, *arguments):
+        return self.run_ptexp(*arguments, env={**os.environ, "XDG_CACHE_HOME": str(self.folder / "cache")})
+
+    def explained(self, *arguments):
+        run = self.with_cache(*self.RENDER, "--device", "cpu", "--explain", *arguments)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return run
+
+    def test_later_runs_use_what_it_measures(self):
+        self.assertNotIn("measured here", self.explained().stdout)
+        begin_s = time.monotonic()
+        run = self.with_cache("calibrate", "--device", "cpu", "--threads", "2")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertLess(time.monotonic() - begin_s, 32)  # the last render may end late
+        self.assertIn("measuring: scan against tree\n", run.stderr)
+        file = Path(run.stdout.rpartition("wrote ")[2].strip())
+        self.assertEqual(file.parent, self.folder / "cache" / "ptexp")
+        self.assertRegex(file.name, r"calibration-.*-2-threads-ptexp-[\d.]+\.json")
+        found = json.loads(file.read_text(encoding="utf-8"))
+        self.assertGreater(len(found["constants"]) + len(found["kept"]), 5)
+        # On a busy machine times may tell nothing: what is planted there counts as well.
+        found["constants"]["scan_primitives"] = 20
+        file.write_text(json.dumps(found), encoding="utf-8")
+        text = self.explained().stdout
+        self.assertIn("up to 20 are scanned faster than a tree is walked (measured here)", text)
+        self.assertIn("(from an H200)", self.explained("--calibration", "none").stdout)
+        self.assertNotIn("measured here", self.explained("--threads", "1").stdout)
+        used = []
+        for choice in ("auto", "none", file):
+            run = self.with_cache(*self.RENDER, "--device", "cpu", "--width", "8", "--height", "8",
+                                  "--spp", "1", "--calibration", choice, "--output", "a.ppm",
+                                  "--stats", "s.json", "--csv", "s.csv")
+            self.assertEqual((run.returncode, run.stderr), (0, ""))
+            used.append(json.loads((self.folder / "s.json").read_text("utf-8"))["used"]["calibration"])
+        with open(self.folder / "s.csv", newline="", encoding="utf-8") as rows:
+            self.assertEqual([row["used_calibration"] for row in csv.DictReader(rows)], used)
+        self.assertRegex(used[0], "^[0-9a-f]{16}$")
+        self.assertEqual(used, [used[0], "", used[0]])
+
+        file.write_text("{", encoding="utf-8")
+        run = self.explained()
+        self.assertNotIn("measured here", run.stdout)
+        self.assertEqual(len(run.stderr.splitlines()), 1, run.stderr)
+        self.assertIn(f"{file}: expected an object of JSON; ignored", run.stderr)
+        self.assert_refused(self.with_cache(*self.RENDER, "--calibration", file, "--output", "b.ppm"),
+                            file)
+
+    def test_what_it_refuses(self):
+        for arguments, words in ((("--spp", "2"), "--spp"), (("cornell",), "cornell"),
+                                 (("--device", "cpu:2"), "one device"), (("--threads", "x"), "--threads x"),
+                                 (("--device", "cuda:77"), "--device cuda:77")):
+            self.assert_refused(self.with_cache("calibrate", *arguments), words)
+        self.assert_refused(self.run_ptexp("calibrate", "--device", "cpu", "--quiet", env={}),
+                            "no cache folder")
+        self.assertEqual(self.files(), [])
+
+
 class BadInput(CommandLine):
     """Everything here is refused before any work, with one line and without a trace."""
 
@@ -864,6 +924,11 @@ class Interruption(CommandLine):
     def test_advice_ends_by_a_signal(self):
         process = self.start_command("advise", "cornell", "--device", "cpu", "--spp", "1000")
         self.end(process, signal.SIGINT)
+
+    def test_a_calibration_ends_by_a_signal(self):
+        process = self.start_command("calibrate", "--device", "cpu")
+        self.end(process, signal.SIGINT)
+        self.assertEqual(self.files(), [])
 
     def test_more_signals_do_not_lose_the_image(self):
         process = self.start("--width", "200", "--height", "100", "--spp", "1000000",

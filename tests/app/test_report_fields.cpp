@@ -44,6 +44,7 @@ RenderReport unequal_report() {
   report.plan = {{"accel", "cwbvh", "a reason"}, {"kernel", "loop", "another"}};
   report.mode = "serial", report.accel = "cwbvh", report.schedule = "graph";
   report.stages = "fused";
+  report.calibration = "fedc4321";
   report.pool_size = 1111, report.finish_paths = 77, report.primitives = 51;
   report.scene = {101,
                   102,
@@ -76,7 +77,8 @@ Options two_repeats() {
 constexpr const char* expected_json = R"({
   "device": {"name": "Device", "kind": "kind", "driver": "driver 5"},
   "used": {"mode": "serial", "accel": "cwbvh", "schedule": "graph", "stages": "fused", "pool_size": 1111,
-           "finish_paths": 77, "primitives": 51, "exposure": 2.25},
+           "finish_paths": 77, "primitives": 51, "calibration": "fedc4321",
+           "exposure": 2.25},
   "plan": [{"option": "accel", "value": "cwbvh", "reason": "a reason"},
            {"option": "kernel", "value": "loop", "reason": "another"}],
   "scene": {"triangles": 101, "meshes": 102, "instances": 103, "spheres": 104, "quads": 105,
@@ -170,6 +172,7 @@ TEST(ReportFields, OfTheCsv) {
       {"used_pool_size", "1111"},
       {"used_finish_paths", "77"},
       {"primitives", "51"},
+      {"used_calibration", "fedc4321"},
       {"used_exposure", "2.25"},
       {"triangles", "101"},
       {"instances", "103"},

@@ -202,6 +202,7 @@ TEST(UnitMessage, DevicesStayAsTheyAre) {
   RenderReport report;
   report.device_name = "NVIDIA H200", report.device_kind = "cuda", report.driver = "13.0";
   report.accel = "bvh8", report.schedule = "graph", report.stages = "fused";
+  report.calibration = "fedc4321";
   report.plan = {{"--accel", "bvh8", "the fastest"}};
   report.pool_size = 1 << 20, report.finish_paths = 33, report.primitives = 1234567;
   report.setup_ms = 1, report.load_ms = 2, report.transfer_ms = 3;
@@ -221,6 +222,7 @@ TEST(UnitMessage, DevicesStayAsTheyAre) {
   EXPECT_EQ(read.accel + read.schedule + read.stages, "bvh8graphfused");
   EXPECT_EQ(read.plan, report.plan);
   EXPECT_EQ(read.pool_size, report.pool_size);
+  EXPECT_EQ(read.calibration, "fedc4321");
   EXPECT_EQ(read.finish_paths, 33u);
   EXPECT_EQ(read.primitives, 1234567u);
   EXPECT_EQ(read.setup_ms + 10 * read.load_ms + 100 * read.transfer_ms, 321);

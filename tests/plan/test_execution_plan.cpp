@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 
 #include "app/options/option_list.h"
 #include "common/error/error.h"
@@ -434,23 +435,118 @@ TEST(ExecutionPlan, ReasonsHaveTheirNumbers) {
   const auto lit_by = [](std::size_t count) {
     return changed(mesh(), [&](SceneProperties& s) { s.emitters = count; });
   };
-  const std::string walk = " are scanned faster than a tree is walked";
+  const std::string origin = " (from an H200)";
+  const std::string walk = " are scanned faster than a tree is walked" + origin;
   EXPECT_EQ(reason("accel", spheres(51), gpu()), "51 primitives: up to 384" + walk);
   EXPECT_EQ(reason("accel", spheres(300), gpu(), mega()), "300 primitives: up to 224" + walk);
   EXPECT_EQ(reason("accel", quads(17), gpu()), "17 primitives: up to 96" + walk);
   EXPECT_EQ(reason("accel", spheres(97), cpu()), "97 primitives: up to 96" + walk);
   EXPECT_EQ(reason("accel", spheres(51), gpu(), {{"accel", "bvh2"}}), "asked for");
   EXPECT_EQ(reason("scene-memory", spheres(51), gpu()),
-            "51 spheres, up to 64 are scanned fastest there");
-  EXPECT_EQ(reason("scene-memory", spheres(65), gpu()), "more than 64 spheres");
+            "51 spheres, up to 64 are scanned fastest there" + origin);
+  EXPECT_EQ(reason("scene-memory", spheres(65), gpu()), "more than 64 spheres" + origin);
   EXPECT_EQ(reason("light-selection", lit_by(30), gpu()),
-            "30 lights; a light tree pays off from 17 lights on");
+            "30 lights; a light tree pays off from 17 lights on" + origin);
   EXPECT_EQ(reason("light-selection", lit_by(1), gpu()),
-            "1 light; a light tree pays off from 17 lights on");
+            "1 light; a light tree pays off from 17 lights on" + origin);
   EXPECT_EQ(reason("light-selection", lit_by(3), gpu(), {{"light-selection", "tree"}}),
             "asked for");
-  EXPECT_EQ(reason("order-surfaces", mesh(), gpu()), "1 kind of BSDFs");
-  EXPECT_EQ(reason("order-surfaces", mesh(five_kinds), gpu()), "5 kinds of BSDFs");
+  EXPECT_EQ(reason("order-surfaces", mesh(), gpu()), "1 kind of BSDFs" + origin);
+  EXPECT_EQ(reason("order-surfaces", mesh(five_kinds), gpu()), "5 kinds of BSDFs" + origin);
+}
+
+/// A decision that turns where a constant is another one.
+struct Turn {
+  PlanConstant constant;
+  double value;
+  const char *option, *before, *after;
+  SceneProperties scene;
+  DeviceProperties device;
+  Choices settings;
+};
+
+std::vector<Turn> planted_turns() {
+  using C = PlanConstants;
+  const SceneProperties dial = mesh(five_kinds | bit(kind_of<Metal>));
+  const Choices automatic{{"mode", "auto"}};
+  const auto large = [](const char* depth) {
+    return Choices{{"mode", "auto"}, {"width", "2048"}, {"height", "2048"}, {"max-depth", depth}};
+  };
+  return {
+      {&C::scan_primitives, 16, "accel", "brute", "bvh2", quads(17), gpu(), {}},
+      {&C::scan_primitives, 50, "accel", "brute", "bvh2", spheres(51), cpu(), {}},
+      {&C::scan_spheres_wavefront, 299, "accel", "brute", "bvh2", spheres(300), gpu(), {}},
+      {&C::scan_spheres_megakernel, 300, "accel", "bvh2", "brute", spheres(300), gpu(), mega()},
+      {&C::constant_spheres, 50, "scene-memory", "constant", "global", spheres(51), gpu(), {}},
+      {&C::few_emitters,
+       0,
+       "light-selection",
+       "power",
+       "tree",
+       changed(mesh(), [](auto& s) { s.emitters = 1; }),
+       gpu(),
+       {}},
+      {&C::order_kinds, 4, "order-surfaces", "off", "on", mesh(five_kinds), gpu(), {}},
+      {&C::short_depth, 12, "mode", "megakernel", "wavefront", quads(17), gpu(), large("12")},
+      {&C::short_depth_sorting, 12, "mode", "megakernel", "wavefront", dial, gpu(), large("12")},
+      {&C::few_paths, 1e9, "mode", "megakernel", "wavefront", quads(17), gpu(), large("50")},
+      {&C::megakernel_spheres, 1.1, "mode", "megakernel", "wavefront", spheres(51), gpu(),
+       automatic},
+      {&C::megakernel_sorting, 1.1, "mode", "megakernel", "wavefront", dial, gpu(), automatic},
+      {&C::megakernel_mesh, 0.9, "mode", "wavefront", "megakernel", mesh(), gpu(), automatic},
+      {&C::megakernel_cpu, 0.9, "mode", "wavefront", "megakernel", mesh(), cpu(), automatic},
+      {&C::finish_lean, 7, "finish-paths", "131072", "7", spheres(51), gpu(), {}},
+      {&C::finish_blocks, 7, "finish-paths", "1048576", "7", mesh(), gpu(), {}},
+      {&C::finish_plain, 7, "finish-paths", "32768", "7", mesh(), gpu(64), {}},
+      {&C::finish_expensive, 7, "finish-paths", "8192", "7", dial, gpu(64), {}},
+      {&C::pool_passes, 7, "pool-size", "1048576", "7", mesh(), gpu(), {{"compaction", "cub"}}},
+      {&C::pool_thread, 7, "pool-size", "4096", "28", mesh(), cpu(), {}},
+  };
+}
+
+// The constants of the trees' times: test_tree_times.cpp.
+TEST(ExecutionPlan, PlantedConstantsTurnDecisions) {
+  for (const Turn& turn : planted_turns()) {
+    const auto of = [&](const DeviceProperties& device) {
+      for (const Decision& d : plan_of(turn.settings, turn.scene, device).decisions)
+        if (d.option == turn.option) return d;
+      return Decision();
+    };
+    const Decision before = of(turn.device);
+    DeviceProperties device = turn.device;
+    set_measured(device.constants, turn.constant, turn.value);
+    const Decision after = of(device);
+    SCOPED_TRACE(std::string(turn.option) + ' ' + before.value + ": " + after.reason);
+    EXPECT_EQ(before.value, turn.before);
+    EXPECT_EQ(after.value, turn.after);
+    EXPECT_NE(before.reason.find("(from an H200)"), std::string::npos) << before.reason;
+    if (turn.constant == &PlanConstants::few_emitters) continue;  // in no calibration
+    EXPECT_NE(after.reason.find("measured here)"), std::string::npos);
+    device.constants.measured_on = "NVIDIA H100";
+    EXPECT_NE(of(device).reason.find("measured on NVIDIA H100)"), std::string::npos);
+  }
+}
+
+TEST(ExecutionPlan, SaysWhereItsConstantsAreFrom) {
+  using C = PlanConstants;
+  PlanConstants constants;
+  EXPECT_EQ(origin_of(constants, {&C::sah_s, &C::few_paths}), "from an H200");
+  set_measured(constants, &C::sah_s, 2);
+  EXPECT_EQ(origin_of(constants, {&C::sah_s, &C::few_paths}), "partly measured here");
+  EXPECT_EQ(origin_of(constants, {&C::few_paths}), "from an H200");
+  EXPECT_EQ(origin_of(constants, {&C::sah_s}), "measured here");
+  DeviceProperties device = gpu();
+  device.constants.calibration = "0123";
+  EXPECT_EQ(plan_of({}, mesh(), device).calibration, "0123");
+}
+
+TEST(ExecutionPlan, EveryConstantHasAPossibleDefault) {
+  std::set<std::string> names;
+  for (const PlanConstantInfo& info : plan_constant_table) {
+    EXPECT_TRUE(names.insert(info.name).second) << info.name;
+    EXPECT_GE(PlanConstants().*info.value, info.lowest) << info.name;
+    EXPECT_LE(PlanConstants().*info.value, info.highest) << info.name;
+  }
 }
 
 // What is prepared for a mode is rendered by it.

@@ -70,6 +70,55 @@ TEST(TreeTimes, ATreeIsWorthWhatItsRaysAreWorth) {
   EXPECT_FALSE(is_device_builder(builder_of(image(64, 1), mesh_of(500), gpu_beside())));
 }
 
+// Slower rays make a better tree worth more, a slower builder less.
+TEST(TreeTimes, PlantedConstantsTurnTheBuilder) {
+  using C = PlanConstants;
+  using enum TreeBuilder;
+  struct Case {
+    PlanConstant constant;
+    double factor;
+    TreeBuilder before, after;
+    DeviceProperties device;
+    int spp;
+  };
+  const Case cases[] = {{&C::ray_s_thread, 100, sah, best, cpu_with(2), 1},
+                        {&C::sah_s, 0.001, hploc, sah, gpu_beside(), 1},
+                        {&C::splits_s, 1000, best, sah_reinsert, cpu_with(2), 64},
+                        {&C::reinsert_s, 10'000, best, sah, cpu_with(2), 64},
+                        {&C::ray_s_multiprocessor, 1000, hploc, hploc_reinsert, gpu_beside(), 1},
+                        {&C::hploc_triangle_s, 100, hploc, hploc_reinsert, gpu_beside(), 1},
+                        {&C::hploc_reinsert_group_s, 0.01, hploc, hploc_reinsert, gpu_beside(), 1},
+                        {&C::best_trace, 1.1, best, sah_reinsert, cpu_with(2), 64}};
+  for (const Case& c : cases) {
+    const SceneProperties scene = mesh_of(200'000);
+    EXPECT_EQ(builder_of(image(512, c.spp), scene, c.device), c.before) << c.factor;
+    DeviceProperties device = c.device;
+    set_measured(device.constants, c.constant, c.factor * device.constants.*c.constant);
+    EXPECT_EQ(builder_of(image(512, c.spp), scene, device), c.after) << c.factor;
+  }
+}
+
+// What a plan with the fitted constants expects is what was measured.
+TEST(TreeTimes, BuildersAreFittedToWhatTheyTook) {
+  for (const int threads : {1, 16}) {
+    DeviceProperties device = cpu_with(threads);
+    const BuilderSeconds seconds{0.3, 0.5, 1.2};
+    fit_builders(device.constants, 100'000, threads, seconds);
+    const std::vector<TreeTimes> times = expected_tree_times({100'000, 1, 0}, device, 0);
+    ASSERT_EQ(times.size(), 3u);
+    EXPECT_NEAR(times[0].build_s, 0.3, 1e-9);
+    EXPECT_NEAR(times[1].build_s, 0.5, 1e-9);
+    EXPECT_NEAR(times[2].build_s, 0.5 + device.constants.splits_tried * 1.2, 1e-9);
+    EXPECT_EQ(origin_of(device.constants, {&PlanConstants::sah_s, &PlanConstants::reinsert_s,
+                                           &PlanConstants::splits_s}),
+              "measured here");
+    PlanConstants none;  // reinsertion was not slower: it keeps its constant
+    fit_builders(none, 100'000, threads, {0.3, 0.3, 1.2});
+    EXPECT_FALSE(is_measured(none, &PlanConstants::reinsert_s));
+    EXPECT_EQ(none.reinsert_s, PlanConstants().reinsert_s);
+  }
+}
+
 TEST(TreeTimes, ATimeLimitBoundsWhatATreeCanSave) {
   Options options = image(1024, 100'000);
   EXPECT_EQ(builder_of(options, mesh_of(2'000'000), cpu_with(2)), TreeBuilder::best);

@@ -3,7 +3,7 @@ beside it and writes what it was asked for into the file `log` there.
 
 behaviour.json: {"version": text, "times": {seed: [ms]}, "images": {seed: text}, "wrong": {seed:
 exit code}, "kills": n, "process": {part: ms}, "end_s": s, "dies": {seed: signal}, "hangs": [seed],
-"answers": {seed: text}, "factor": x}; kills: it kills the harness when it is to render number n;
+"answers": {seed: text}, "factor": x, "help": text}; kills: it kills the harness when it is to render number n;
 process: what it says of its wall time; end_s: how long it sleeps after its files; answers: what
 `measure` says instead; factor: by which its times are multiplied.
 """
@@ -124,6 +124,8 @@ if sys.argv[1] == "--list-devices":
     print("cpu        CPU (2 threads)")
 elif sys.argv[1] == "--version":
     print(f"ptexp 0\ncommit {BEHAVIOUR.get('version', 'abc')}")
+elif sys.argv[1] == "--help-all":
+    print(BEHAVIOUR.get("help", ""))
 elif sys.argv[1] == "compare":
     compare(*sys.argv[2:4])
 elif sys.argv[1] == "measure":

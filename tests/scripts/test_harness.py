@@ -312,6 +312,15 @@ class Harness(unittest.TestCase):
         self.run_seeds("--repeat", "4")
         self.assertEqual(len(self.log()), 6)
 
+    def test_a_calibration_decides_nothing_unasked(self):
+        self.run_seeds(seeds=(1,))  # a program that has none
+        self.assertNotIn("--calibration", self.facts()["configurations"]["seed 1"])
+        for asked, used in (((), "none"), (("--calibration", "auto"), "auto")):
+            self.program = self.fake(f"with {used}", help="  --calibration auto|none|FILE [auto]")
+            self.run_seeds("--fresh", *asked, seeds=(1,))
+            self.assertIn(f"--calibration {used} ", self.facts()["configurations"]["seed 1"])
+            self.assertEqual(self.facts()["device"]["calibration"], used)
+
     def test_a_build_that_counts_lanes_is_refused(self):
         self.fake("a", version="abc\nbuild Release with divergence counters, GNU")
         status, _, errors = self.run_seeds()

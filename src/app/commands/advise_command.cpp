@@ -5,6 +5,7 @@
 
 #include "app/commands/commands.h"
 #include "app/render/advise.h"
+#include "app/render/calibration.h"
 #include "app/render/render_session.h"
 #include "app/terminal/process.h"
 #include "common/error/error.h"
@@ -31,6 +32,22 @@ int advise_command(const AdviseCommand& command) {
                             command.limit_s));
   print("{}, ", session.scene().name);
   print_text(advice_text(*advice));
+  return 0;
+}
+
+int calibrate_command(const CalibrateCommand& command) {
+  CalibrationRequest request{.settings = command.settings, .stop = interrupted, .says = {}};
+  if (!command.is_quiet)
+    request.says = [](const std::string& what) { print_notice("measuring: " + what); };
+  note_signals();
+  const auto calibration = calibrate(request);
+  if (!calibration) {
+    print_notice("interrupted");
+    return exit_code_of_signal();
+  }
+  const std::string file = store_calibration(*calibration);
+  if (!command.is_quiet) print_text(calibration_text(*calibration));
+  print("wrote {}\n", file);
   return 0;
 }
 

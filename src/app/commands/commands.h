@@ -52,6 +52,10 @@ int compact_command(const CompactCommand& command);
 /// + N after signal N.
 int advise_command(const AdviseCommand& command);
 
+/// `ptexp calibrate`: measures the plan's constants on a device, prints them and stores them in the
+/// user's cache folder. Returns as advise_command.
+int calibrate_command(const CalibrateCommand& command);
+
 /// `ptexp measure`: renders the configurations that the standard input names, a JSON object in each
 /// line, and answers each with a line of the standard output: its statistics, or an error, after
 /// which the next follow. What configurations have in common is kept from one to the next. Returns

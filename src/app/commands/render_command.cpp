@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "app/commands/commands.h"
+#include "app/render/calibration.h"
 #include "app/render/make_renderer.h"
 #include "app/render/rank_setup.h"
 #include "app/render/render_outputs.h"
@@ -41,6 +42,7 @@ std::vector<DeviceInfo> find_devices(Options& options, const GivenOptions& given
   using Kind = DeviceChoice::Kind;
   const Kind wanted = options.device.kind;
   std::vector<DeviceInfo> devices = choose_render_devices(options, given, &ranks);
+  apply_calibration(options, devices, print_warning);
   if (options.quiet) return devices;
   for (const DeviceInfo& device : devices) {
     print("device {}: {} ({})\n", to_string(device.choice), limited(device, options.limits).name,

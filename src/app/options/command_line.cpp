@@ -240,6 +240,11 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (parser.compact.is_parsed()) return parse_alone(parser, parser.compact, arguments);
   if (parser.doctor.is_parsed()) return parse_alone(parser, parser.doctor, arguments);
   if (parser.measure.is_parsed()) return parse_alone(parser, parser.measure, arguments);
+  if (parser.calibrate.is_parsed()) {
+    CalibrateCommand command = parse_alone(parser, parser.calibrate, arguments);
+    (void)make_render_command(command.settings);  // refuses what it can at once
+    return command;
+  }
   const std::pair<const CLI::Option*, Command> lists[] = {
       {parser.list_scenes, ListScenesCommand{}},
       {parser.list_devices, ListDevicesCommand{}},

@@ -64,11 +64,12 @@ struct HelpCommand {
   std::string text;  ///< to be printed as it is
 };
 
-using Command = std::variant<RenderCommand, ResumeCommand, MergeCommand, VerifyCommand,
-                             CompareCommand, TraceCommand, RaysCommand, CompactCommand,
-                             DoctorCommand, MeasureCommand, ViewCommand, AdviseCommand,
-                             ListScenesCommand, ListDevicesCommand, ListKernelsCommand,
-                             VersionCommand, CompletionCommand, ReferenceCommand, HelpCommand>;
+using Command =
+    std::variant<RenderCommand, ResumeCommand, MergeCommand, VerifyCommand, CompareCommand,
+                 TraceCommand, RaysCommand, CompactCommand, DoctorCommand, MeasureCommand,
+                 CalibrateCommand, ViewCommand, AdviseCommand, ListScenesCommand,
+                 ListDevicesCommand, ListKernelsCommand, VersionCommand, CompletionCommand,
+                 ReferenceCommand, HelpCommand>;
 
 /// `arguments` without the program's name. Throws Error, one line that names the option, for
 /// everything that can be refused without a device or a scene.

@@ -402,7 +402,11 @@ void add_execution(std::vector<OptionEntry>& list) {
            "shadow, bounce (of fused stages), finish, accumulate; e.g.\n"
            "intersect=128,shadow=64")
       .expert()
-      .only(wavefront, cuda);
+      .only(wavefront, cuda)
+      .add(text("calibration", "auto|none|FILE", &Options::calibration),
+           "Numbers by which auto decides. auto: those that ptexp calibrate\n"
+           "has measured on this device, or none: an H200's; a file: its")
+      .expert();
 }
 
 void add_toggles(std::vector<OptionEntry>& list) {

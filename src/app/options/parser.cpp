@@ -38,6 +38,9 @@ constexpr const char* compact_text =
 constexpr const char* doctor_text =
     "Tells what would run on this machine, what not, and the remedy.\n"
     "Exit code 0: all that it was built for works, 1: something is missing.";
+constexpr const char* calibrate_text =
+    "Measures in at most 30 s the numbers by which auto decides on this device, and\n"
+    "stores them in the user's cache folder, where later runs find them.";
 constexpr const char* measure_text =
     "Measures one configuration after the other: reads their options as lines of JSON,\n"
     "{\"arguments\": [\"--mode\", \"wavefront\", ...]}, and answers each with a line.";
@@ -78,7 +81,8 @@ Parser::Parser()
       rays(app, "rays", rays_text, rays_options()),
       compact(app, "compact", compact_text, compact_options()),
       doctor(app, "doctor", doctor_text, doctor_options()),
-      measure(app, "measure", measure_text, {}) {
+      measure(app, "measure", measure_text, {}),
+      calibrate(app, "calibrate", calibrate_text, calibrate_options()) {
   for (const OptionEntry& entry : option_list()) add_option(entry);
   app.set_help_flag("-h,--help", "Prints this help")->group(information);
   list_scenes = add_flag(app, "--list-scenes", "Names and describes the scenes");

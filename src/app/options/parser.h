@@ -91,6 +91,7 @@ struct Parser {
   Subcommand<CompactCommand> compact;
   Subcommand<DoctorCommand> doctor;
   Subcommand<MeasureCommand> measure;
+  Subcommand<CalibrateCommand> calibrate;
   CLI::App *resume = nullptr, *merge = nullptr, *verify = nullptr, *view = nullptr;
   CLI::App* advise = nullptr;
   CLI::Option *checkpoint = nullptr, *merged = nullptr, *parts = nullptr, *verified = nullptr;

@@ -173,4 +173,19 @@ std::vector<SubcommandOption<DoctorCommand>> doctor_options() {
   return {{"json", nullptr, "Prints it as JSON", [](DoctorCommand& c, S) { c.as_json = true; }}};
 }
 
+std::vector<SubcommandOption<CalibrateCommand>> calibrate_options() {
+  using C = CalibrateCommand;
+  return {
+      {"device", "D [auto]", "auto, cpu, cuda, cuda:N",
+       [](C& c, S v) {
+         c.settings.push_back({&find_option("device"), v});
+       }},
+      {"threads", "N [0]", "CPU threads; 0: one per core",
+       [](C& c, S v) {
+         c.settings.push_back({&find_option("threads"), v});
+       }},
+      {"quiet", nullptr, "Prints the file's name alone", [](C& c, S) { c.is_quiet = true; }},
+  };
+}
+
 }  // namespace pt

@@ -1,11 +1,12 @@
-// The subcommands `trace`, `rays`, `compact`, `doctor` and `measure`, and the tables of their
-// options.
+// The subcommands `trace`, `rays`, `compact`, `doctor`, `measure` and `calibrate`, and the tables
+// of their options.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "app/options/option_list.h"
 #include "common/options/options.h"
 #include "common/rays/generate_rays.h"
 #include "common/rays/trace_rays.h"
@@ -73,9 +74,16 @@ struct DoctorCommand {
 /// Its configurations come from the standard input.
 struct MeasureCommand {};
 
+/// Measures the plan's constants.
+struct CalibrateCommand {
+  std::vector<Setting> settings;  ///< the device and its threads
+  bool is_quiet = false;
+};
+
 std::vector<SubcommandOption<TraceCommand>> trace_options();
 std::vector<SubcommandOption<RaysCommand>> rays_options();
 std::vector<SubcommandOption<CompactCommand>> compact_options();
 std::vector<SubcommandOption<DoctorCommand>> doctor_options();
+std::vector<SubcommandOption<CalibrateCommand>> calibrate_options();
 
 }  // namespace pt

@@ -351,6 +351,20 @@ void shrink(Options& options, double scale) {
 
 }  // namespace
 
+std::optional<WayRun> way_run(const RenderResult& result) {
+  if (result.interrupted || !result.has_image) return std::nullopt;
+  const RenderReport& report = result.report;
+  const RenderRun& run = report.runs.back();
+  return WayRun{.kernel_ms = summarize(report).kernel_ms.median,
+                .wall_ms = run.wall_ms,
+                .build_ms = report.scene.tree.build_ms,
+                .stages = run.stages,
+                .counts = report.counts,
+                .device = report.device_name,
+                .is_on_gpu = report.device_kind == "cuda",
+                .counters = report.counters};
+}
+
 const AdvisedWay& Advice::best() const {
   const bool is_better = !ways.empty() && ways.front().low > 1 && ways.front().ratio > 1 + same;
   return is_better ? ways.front() : standard;
@@ -384,18 +398,7 @@ std::optional<Advice> advise(RenderSession& session, const AdviceRequest& reques
     MeasureHooks hooks;
     const double end_s = std::min(begin_s + request.limit_s, steady_seconds() + work.limit_s);
     hooks.stop = [&] { return request.stop() || steady_seconds() > end_s; };
-    const RenderResult result = session.render(command, hooks, {});
-    if (result.interrupted || !result.has_image) return std::nullopt;
-    const RenderReport& report = result.report;
-    const RenderRun& run = report.runs.back();
-    return WayRun{.kernel_ms = run.kernel_ms,
-                  .wall_ms = run.wall_ms,
-                  .build_ms = report.scene.tree.build_ms,
-                  .stages = run.stages,
-                  .counts = report.counts,
-                  .device = report.device_name,
-                  .is_on_gpu = report.device_kind == "cuda",
-                  .counters = report.counters};
+    return way_run(session.render(command, hooks, {}));
   };
   RenderCommand user = command_of({});
   apply_defaults(session.scene().defaults, user.given, user.options);

@@ -15,6 +15,7 @@
 namespace pt {
 
 class RenderSession;
+struct RenderResult;
 
 /// Options beside those that the user gave, by name and value: what makes a way to render differ.
 using WayOptions = std::vector<std::pair<std::string, std::string>>;
@@ -29,6 +30,9 @@ struct WayRun {
   bool is_on_gpu = false;
   std::optional<HardwareCounters> counters;  ///< where they were asked for
 };
+
+/// Of a measurement, whose kernel time is the median of its repeats. Empty: it was interrupted.
+std::optional<WayRun> way_run(const RenderResult& result);
 
 /// What of the render is rendered: less than all where all would take too long.
 struct WayWork {

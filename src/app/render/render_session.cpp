@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "app/options/check_options.h"
+#include "app/render/calibration.h"
 #include "app/render/make_renderer.h"
 #include "app/render/rank_setup.h"
 #include "app/render/render_outputs.h"
@@ -58,7 +59,8 @@ bool renders_alike(const ExecutionPlan& a, const ExecutionPlan& b) {
   const auto of_scene = [](const ExecutionPlan& p) {
     return std::tie(p.mode, p.kernel_set, p.accel, p.traversal, p.light_selection, p.megakernel,
                     p.scene_memory, p.fused, p.orders_surfaces, p.persistent_warps, p.finish_paths,
-                    p.finishes_in_blocks, p.pool_paths_max, p.uses_graph, p.decisions);
+                    p.finishes_in_blocks, p.pool_paths_max, p.uses_graph, p.calibration,
+                    p.decisions);
   };
   return of_scene(a) == of_scene(b);
 }
@@ -143,9 +145,12 @@ RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, co
                                                 ProcessClock& clock) {
   Options options = command.options;
   std::vector<DeviceInfo> devices = choose_render_devices(options, command.given);
+  apply_calibration(options, devices, warn);
   clock.end(&ProcessTimes::devices);
   apply_defaults(source_.defaults, command.given, options);
   Keys keys = keys_of(options);
+  for (const DeviceInfo& device : devices)
+    keys.renderer += device.properties.constants.calibration + '\n';
   const bool is_same = prepared_ && !changes_.any() && prepared_->keys.renderer == keys.renderer;
   if (is_same) {
     prepared_->scene_ms = 0;
@@ -240,7 +245,8 @@ RenderPass RenderSession::add_pass(const RenderCommand& command, int samples,
 
 std::vector<Decision> RenderSession::plan(const RenderCommand& command) {
   Options options = command.options;
-  const std::vector<DeviceInfo> devices = choose_render_devices(options, command.given);
+  std::vector<DeviceInfo> devices = choose_render_devices(options, command.given);
+  apply_calibration(options, devices, {});
   apply_defaults(source_.defaults, command.given, options);
   SceneData scene = source_;
   resolve_scene(scene, options);

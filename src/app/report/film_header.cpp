@@ -91,6 +91,7 @@ Options options_in_header(const ImageMetadata& header, const std::string& file) 
       if (std::ranges::find(former_options, key) != std::end(former_options)) continue;
       throw Error(fmt::format("{}: {}: this program has no such option", file, key));
     }
+    if (entry->name == "calibration") continue;  // of the machine that began
     if (entry->form == OptionForm::flag && value != "on") continue;
     if (entry->form != OptionForm::list) {
       entry->set(options, value);

@@ -81,6 +81,7 @@ void add_device(CsvRow& row, const RenderReport& report) {
   row.emplace_back("used_pool_size", std::to_string(report.pool_size));
   row.emplace_back("used_finish_paths", std::to_string(report.finish_paths));
   row.emplace_back("primitives", std::to_string(report.primitives));
+  row.emplace_back("used_calibration", report.calibration);
   row.emplace_back("used_exposure", report.exposure ? fmt::format("{}", *report.exposure) : "");
 }
 

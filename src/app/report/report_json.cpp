@@ -221,6 +221,7 @@ std::string report_json(const Options& options, const RenderReport& report) {
                   {"pool_size", report.pool_size},
                   {"finish_paths", report.finish_paths},
                   {"primitives", report.primitives},
+                  {"calibration", report.calibration},
                   {"exposure", report.exposure ? Json(*report.exposure) : Json(nullptr)}};
   json["plan"] = plan_json(report.plan);
   json["scene"] = scene_json(report.scene);

@@ -15,6 +15,7 @@ struct DeviceInfo {
   DeviceChoice choice;          ///< what to pass as --device: never automatic
   std::string name;             ///< e.g. "NVIDIA H200"
   std::string detail;           ///< e.g. "132 multiprocessors, 139.8 GiB, compute capability 9.0"
+  std::string driver{};         ///< of CUDA, e.g. "CUDA 13.0"; empty on the CPU
   DeviceProperties properties;  ///< what a plan depends on
   int sms = 0;                  ///< multiprocessors to use, 0: all
 };

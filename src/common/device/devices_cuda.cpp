@@ -12,6 +12,8 @@ std::string append_cuda_devices(std::vector<DeviceInfo>& devices) {
     cudaGetLastError();  // clears it
     return fmt::format("CUDA says: {}", cudaGetErrorString(status));
   }
+  int driver = 0;
+  if (cudaDriverGetVersion(&driver) != cudaSuccess) cudaGetLastError();  // clears it
   for (int i = 0; i < count; ++i) {
     cudaDeviceProp p{};
     if (cudaGetDeviceProperties(&p, i) != cudaSuccess) continue;
@@ -21,6 +23,7 @@ std::string append_cuda_devices(std::vector<DeviceInfo>& devices) {
     device.detail = fmt::format(
         "{} multiprocessors, {:.1f} GiB, compute capability {}.{}", p.multiProcessorCount,
         static_cast<double>(p.totalGlobalMem) / (1 << 30), p.major, p.minor);
+    device.driver = fmt::format("CUDA {}.{}", driver / 1000, driver % 1000 / 10);
     device.properties.is_cuda = true;
     device.properties.block_shared_bytes = p.sharedMemPerBlockOptin;
     device.properties.block_threads_max = p.maxThreadsPerBlock;

@@ -142,8 +142,9 @@ UnitResult read_unit_result(ByteReader& reader) {
 }
 
 void write_device(ByteWriter& writer, const RenderReport& report) {
-  for (const std::string* text : {&report.device_name, &report.device_kind, &report.driver,
-                                  &report.accel, &report.schedule, &report.stages}) {
+  for (const std::string* text :
+       {&report.device_name, &report.device_kind, &report.driver, &report.accel, &report.schedule,
+        &report.stages, &report.calibration}) {
     writer.text(*text);
   }
   writer.list(report.plan, [&](const Decision& decision) {
@@ -164,7 +165,7 @@ void write_device(ByteWriter& writer, const RenderReport& report) {
 
 void read_device(ByteReader& reader, RenderReport& report) {
   for (std::string* text : {&report.device_name, &report.device_kind, &report.driver, &report.accel,
-                            &report.schedule, &report.stages}) {
+                            &report.schedule, &report.stages, &report.calibration}) {
     *text = reader.text();
   }
   report.plan = reader.list([&] {

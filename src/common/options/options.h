@@ -209,6 +209,8 @@ struct Options : ImageSettings, ExecutionSettings {
   std::string stats_file;  ///< JSON, empty: none
   std::string csv_file;    ///< appended, empty: none
   bool explain = false;    ///< print the plan and exit
+  /// "auto": what `ptexp calibrate` has stored for the device; "none", or a file.
+  std::string calibration = "auto";
   bool quiet = false;
 };
 

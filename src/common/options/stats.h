@@ -145,6 +145,7 @@ struct RenderReport {
   std::string device_kind;     ///< "cpu" or "cuda"
   std::string driver;          ///< CUDA driver and runtime versions; empty on the CPU
   std::vector<Decision> plan;  ///< how the render was executed, and why
+  std::string calibration;     ///< hash of the one whose numbers the plan used; empty: none
   std::string mode;            ///< used, never "auto"
   std::string accel;           ///< the structure used, e.g. "bvh2"
   std::string schedule;  ///< of --schedule, as used: "host" or "graph"; empty where there is none

@@ -16,28 +16,6 @@
 namespace pt {
 namespace {
 
-// Measured on an H200 (results/README.md and results/log/).
-constexpr std::size_t scan_primitives_max = 96;  // of any kind, on any device
-// CUDA scans spheres in half precision. A stage that walks a tree waits for the slowest ray of its
-// warp; a megakernel less so, since threads that are done with theirs take the next step.
-constexpr std::size_t scan_spheres_wavefront_max = 384, scan_spheres_megakernel_max = 224;
-/// Up to here constant memory is as good as any: the scan's first two chunks are addressed by
-/// constants (traverse_brute.h). Beyond, 250 spheres take 5 % longer than in global memory, 1000
-/// 45 %.
-constexpr std::size_t constant_spheres_best = 64;
-/// On a GPU a tree's descents can take as long as all other shading, which few emitters are not
-/// worth.
-constexpr std::size_t few_emitters = 16;
-// Where a pass over all tags fills the queues: large enough to hide the launches, small enough for
-// the L2 cache.
-constexpr std::uint64_t pool_paths_for_passes = std::uint64_t{1} << 20;
-constexpr std::uint64_t pool_paths_per_thread = 1024;       // of a CPU
-constexpr std::uint32_t finish_paths_of_blocks = 1u << 20;  // about as many as blocks hold
-constexpr int short_depth = 6;  // of which waves trace all rays with full warps
-// Scans of quads up to this many paths are faster in waves: a megakernel's warps wait for the
-// longest.
-constexpr std::uint64_t few_paths = std::uint64_t{1} << 19;
-
 constexpr const char* asked = "asked for";
 
 /// What has been decided so far, and what the decisions depend on.
@@ -49,6 +27,7 @@ class Planner {
     static_cast<ExecutionSettings&>(plan_) = options;
     if (!device.is_cuda) plan_.threads = device.threads;
     if (device.is_cuda) note_limits(device);
+    plan_.calibration = device.constants.calibration;
   }
 
   ExecutionPlan plan() {
@@ -68,6 +47,8 @@ class Planner {
   }
 
  private:
+  using C = PlanConstants;
+
   bool is_specialized() const { return plan_.kernel_set == KernelSet::specialized; }
 
   /// Where a path keeps --path-bytes.
@@ -100,6 +81,11 @@ class Planner {
              fmt::format("asked for, of {} KiB", whole.block_shared_bytes / 1024));
   }
 
+  /// The reason, with where the constants come from that it rests on.
+  std::string by(std::initializer_list<PlanConstant> used, const std::string& reason) const {
+    return reason + " (" + origin_of(c_, used) + ")";
+  }
+
   void choose_mode() {
     std::string reason = asked;
     plan_.mode = o_.mode;
@@ -110,21 +96,51 @@ class Planner {
   /// Fitted to sizes.csv: results/log/2026-11-sizes.md.
   std::pair<Mode, std::string> faster_mode() const {
     using enum Mode;
-    if (!device_.is_cuda) return {wavefront, "the CPU takes rays and surfaces in blocks"};
     if (o_.integrator == IntegratorKind::mlt) return {wavefront, "its slots follow chains"};
-    if (is_specialized()) {
-      if (scene_.quads == 0) return {megakernel, "spheres: a path is cheap to follow alone"};
-      if (o_.max_depth <= short_depth) return {wavefront, "quads and short paths"};
-      const double paths = double(o_.width) * o_.height * o_.spp;
-      if (paths <= double(few_paths)) return {wavefront, "quads and few paths"};
-      return {megakernel, "quads and many long paths"};
+    if (!device_.is_cuda) {
+      return by_ratio({&C::megakernel_cpu}, "threads that follow paths alone were faster",
+                      "the CPU takes rays and surfaces in blocks");
     }
-    const bool sorts =
-        automatic_megakernel().first == MegakernelKind::sort && scene_.instances == 0;
-    if (sorts && order_pays_for(scene_.bsdf_kinds) && o_.max_depth > short_depth)
-      return {megakernel, "many kinds of BSDFs on long paths: blocks that sort were faster"};
-    return {wavefront, "persistent warps or queues of rays were faster"};
+    if (is_specialized()) return faster_lean_mode();
+    const bool sorts = automatic_megakernel().first == MegakernelKind::sort &&
+                       scene_.instances == 0 && orders_pay();
+    if (sorts && o_.max_depth > c_.short_depth_sorting) {
+      return by_ratio({&C::megakernel_sorting, &C::short_depth_sorting},
+                      "many kinds of BSDFs on long paths: blocks that sort were faster",
+                      "many kinds of BSDFs on long paths: waves were faster");
+    }
+    const char *alone = "a megakernel was faster",
+               *waves = "persistent warps or queues of rays were faster";
+    return sorts ? by_ratio({&C::megakernel_mesh, &C::short_depth_sorting}, alone, waves)
+                 : by_ratio({&C::megakernel_mesh}, alone, waves);
   }
+
+  std::pair<Mode, std::string> faster_lean_mode() const {
+    using enum Mode;
+    if (scene_.quads == 0) {
+      return by_ratio({&C::megakernel_spheres}, "spheres: a path is cheap to follow alone",
+                      "spheres: waves were faster");
+    }
+    if (o_.max_depth <= c_.short_depth)
+      return {wavefront, by({&C::short_depth}, "quads and short paths")};
+    const double paths = double(o_.width) * o_.height * o_.spp;
+    const auto reason = [&](const char* text) {
+      return by({&C::short_depth, &C::few_paths}, text);
+    };
+    if (paths <= c_.few_paths) return {wavefront, reason("quads and few paths")};
+    return {megakernel, reason("quads and many long paths")};
+  }
+
+  /// By the megakernel's time over the wavefront's, the first of the constants.
+  std::pair<Mode, std::string> by_ratio(std::initializer_list<PlanConstant> used,
+                                        const char* why_megakernel,
+                                        const char* why_wavefront) const {
+    const bool is_megakernel = c_.**used.begin() < 1;
+    return {is_megakernel ? Mode::megakernel : Mode::wavefront,
+            by(used, is_megakernel ? why_megakernel : why_wavefront)};
+  }
+
+  bool orders_pay() const { return order_pays_for(scene_.bsdf_kinds, c_.order_kinds); }
 
   void choose_kernels() {
     const std::string why = why_general(o_, scene_);
@@ -196,7 +212,7 @@ class Planner {
     if (o_.builder != TreeBuilder::automatic)
       return decide("builder", to_string(plan_.builder), asked);
     const TreeWork work{double(scene_.triangles + 2 * scene_.quads), double(scene_.tree_groups),
-                        expected_rays(rendered_pixels(), o_)};
+                        expected_rays(rendered_pixels(), o_, c_)};
     const std::vector<TreeTimes> all = expected_tree_times(work, device_, double(o_.time_limit));
     const TreeTimes& first = *std::ranges::min_element(all, {}, &TreeTimes::total_s);
     plan_.builder = first.builder;
@@ -207,7 +223,9 @@ class Planner {
         reason += fmt::format("; {} {} + {}", to_string(other.builder), seconds(other.build_s),
                               seconds(other.trace_s));
     }
-    decide("builder", to_string(first.builder), reason);
+    decide("builder", to_string(first.builder),
+           device_.is_cuda ? by({&C::ray_s_multiprocessor, &C::hploc_triangle_s, &C::sah_s}, reason)
+                           : by({&C::ray_s_thread, &C::sah_s, &C::reinsert_s}, reason));
   }
 
   double rendered_pixels() const {
@@ -224,13 +242,14 @@ class Planner {
     if (device_.is_cuda && is_toggled(o_))
       return {Accel::brute, "--rng and --branching have kernels for it alone on CUDA"};
     const bool halves = device_.is_cuda && scene_.quads == 0;
-    const std::size_t most = !halves                         ? scan_primitives_max
-                             : plan_.mode == Mode::wavefront ? scan_spheres_wavefront_max
-                                                             : scan_spheres_megakernel_max;
-    const std::size_t count = scene_.spheres + scene_.quads;
-    return {count <= most ? Accel::brute : Accel::bvh2,
-            fmt::format("{} primitives: up to {} are scanned faster than a tree is walked", count,
-                        most)};
+    const PlanConstant most = !halves                         ? &C::scan_primitives
+                              : plan_.mode == Mode::wavefront ? &C::scan_spheres_wavefront
+                                                              : &C::scan_spheres_megakernel;
+    const auto count = double(scene_.spheres + scene_.quads);
+    return {count <= c_.*most ? Accel::brute : Accel::bvh2,
+            by({most}, fmt::format("{:.0f} primitives: up to {:.0f} are scanned faster than a tree "
+                                   "is walked",
+                                   count, c_.*most))};
   }
 
   /// Persistent warps and AVX2 make the most of wide trees, with masks where rays are traced in
@@ -279,14 +298,17 @@ class Planner {
     plan_.scene_memory = o_.scene_memory;
     std::string reason = asked;
     if (plan_.scene_memory == SceneMemory::automatic) {
-      const bool fits = scene_.spheres <= constant_spheres_best;
+      const double most = c_.constant_spheres;
+      const bool fits = double(scene_.spheres) <= most;
       const bool is_scan = plan_.accel == Accel::brute && scans_in_one_kernel();
       const bool is_constant = fits && !is_toggled(o_) && is_scan;
       plan_.scene_memory = is_constant ? SceneMemory::constant : SceneMemory::global;
-      reason = is_constant ? fmt::format("{} spheres, up to {} are scanned fastest there",
-                                         scene_.spheres, constant_spheres_best)
-               : fits      ? "constant memory is for plain scans"
-                           : fmt::format("more than {} spheres", constant_spheres_best);
+      const auto fitted = [&](const std::string& text) { return by({&C::constant_spheres}, text); };
+      reason = is_constant
+                   ? fitted(fmt::format("{} spheres, up to {:.0f} are scanned fastest there",
+                                        scene_.spheres, most))
+               : fits ? "constant memory is for plain scans"
+                      : fitted(fmt::format("more than {:.0f} spheres", most));
     }
     decide("scene-memory", to_string(plan_.scene_memory), reason);
   }
@@ -334,7 +356,7 @@ class Planner {
   void choose_surface_order() {
     if (plan_.fused) return;
     const bool has_queues = compaction_info(o_.compaction).has_queues;
-    const bool pays = device_.is_cuda && !is_specialized() && order_pays_for(scene_.bsdf_kinds);
+    const bool pays = device_.is_cuda && !is_specialized() && orders_pay();
     const bool is_free = o_.order_surfaces == SurfaceOrdering::automatic;
     const bool wanted = is_free ? pays : o_.order_surfaces == SurfaceOrdering::on;
     plan_.orders_surfaces = has_queues && wanted;
@@ -343,7 +365,8 @@ class Planner {
            !is_free           ? asked
            : !has_queues      ? "there is no queue"
            : !device_.is_cuda ? "threads of a CPU do not run in warps"
-                              : fmt::format("{} kind{} of BSDFs", kinds, kinds == 1 ? "" : "s"));
+                              : by({&C::order_kinds}, fmt::format("{} kind{} of BSDFs", kinds,
+                                                                  kinds == 1 ? "" : "s")));
   }
 
   /// A wave costs some 0.1 ms however few rays it has. A thread that follows a path waits for the
@@ -356,16 +379,16 @@ class Planner {
       plan_.finish_paths = *o_.finish_paths;
       return decide("finish-paths", std::to_string(plan_.finish_paths), asked);
     }
-    const bool is_expensive = scene_.instances > 0 || order_pays_for(scene_.bsdf_kinds);
-    plan_.finish_paths = is_specialized()           ? 1u << 17
-                         : plan_.finishes_in_blocks ? finish_paths_of_blocks
-                         : is_expensive             ? 1u << 13
-                                                    : 1u << 15;
-    decide("finish-paths", std::to_string(plan_.finish_paths),
-           is_specialized()           ? "a path is cheap to follow alone"
-           : plan_.finishes_in_blocks ? "block-local wavefronts follow them"
-           : is_expensive ? "instances or many kinds of BSDFs: a path alone is expensive"
-                          : "triangles");
+    const bool is_expensive = scene_.instances > 0 || orders_pay();
+    const auto [paths, reason] =
+        is_specialized() ? std::pair(&C::finish_lean, "a path is cheap to follow alone")
+        : plan_.finishes_in_blocks
+            ? std::pair(&C::finish_blocks, "block-local wavefronts follow them")
+        : is_expensive ? std::pair(&C::finish_expensive,
+                                   "instances or many kinds of BSDFs: a path alone is expensive")
+                       : std::pair(&C::finish_plain, "triangles");
+    plan_.finish_paths = static_cast<std::uint32_t>(c_.*paths);
+    decide("finish-paths", std::to_string(plan_.finish_paths), by({paths}, reason));
   }
 
   /// Where the kernel of --kernel sort knows all that the scene has.
@@ -375,44 +398,46 @@ class Planner {
 
   void choose_pool() {
     const bool appends = compaction_info(o_.compaction).appends;
-    plan_.pool_paths_max = o_.pool_size > 0 ? o_.pool_size
-                           : !device_.is_cuda
-                               ? pool_paths_per_thread * static_cast<std::uint64_t>(device_.threads)
-                           : appends ? 0
-                                     : pool_paths_for_passes;
+    const double fitting = !device_.is_cuda ? c_.pool_thread * device_.threads
+                           : appends        ? 0
+                                            : c_.pool_passes;
+    plan_.pool_paths_max = o_.pool_size > 0 ? o_.pool_size : static_cast<std::uint64_t>(fitting);
     decide("pool-size",
            plan_.pool_paths_max == 0 ? "the whole batch" : std::to_string(plan_.pool_paths_max),
            o_.pool_size > 0   ? asked
-           : !device_.is_cuda ? "fits the caches of each thread"
+           : !device_.is_cuda ? by({&C::pool_thread}, "fits the caches of each thread")
            : appends          ? "no slot is used twice, so neighbours stay neighbouring pixels"
-                              : "a pass over all tags fits the L2 cache");
+                              : by({&C::pool_passes}, "a pass over all tags fits the L2 cache"));
   }
 
   void choose_lights() {
     using enum LightSelection;
     const bool is_given = o_.light_selection != automatic;
-    const std::size_t emitters = scene_.emitters;
-    plan_.light_selection = is_given ? o_.light_selection : emitters > few_emitters ? tree : power;
+    const auto emitters = static_cast<double>(scene_.emitters);
+    plan_.light_selection = is_given                     ? o_.light_selection
+                            : emitters > c_.few_emitters ? tree
+                                                         : power;
     if (!o_.nee) return;
     decide("light-selection", to_string(plan_.light_selection),
            is_given ? asked
-                    : fmt::format("{} light{}; a light tree pays off from {} lights on", emitters,
-                                  emitters == 1 ? "" : "s", few_emitters + 1));
+                    : by({&C::few_emitters},
+                         fmt::format("{:.0f} light{}; a light tree pays off from {:.0f} lights on",
+                                     emitters, emitters == 1 ? "" : "s", c_.few_emitters + 1)));
   }
 
   const Options& o_;
   const SceneProperties& scene_;
   const DeviceProperties device_;  ///< within the limits
+  const PlanConstants& c_ = device_.constants;
   ExecutionPlan plan_;
 };
 
 }  // namespace
 
-bool order_pays_for(std::uint32_t bsdf_kinds) {
-  constexpr int few = 5;
+bool order_pays_for(std::uint32_t bsdf_kinds, double few) {
   constexpr std::uint32_t one = 1, long_ones = one << static_cast<int>(kind_of<Principled>) |
                                                one << static_cast<int>(kind_of<PrincipledThin>);
-  return std::popcount(bsdf_kinds) > ((bsdf_kinds & long_ones) != 0 ? 1 : few);
+  return std::popcount(bsdf_kinds) > ((bsdf_kinds & long_ones) != 0 ? std::min(few, 1.0) : few);
 }
 
 std::string why_general(const Options& o, const SceneProperties& scene) {

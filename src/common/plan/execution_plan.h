@@ -30,6 +30,7 @@ struct ExecutionPlan : ImageSettings, ExecutionSettings {
   std::uint64_t pool_paths_max = 0;  ///< wavefront: of an automatic pool, 0: no limit
   bool uses_graph = false;           ///< wavefront on CUDA: the device loops over the waves
   std::vector<Decision> decisions;   ///< in the order in which they were made
+  std::string calibration;           ///< whose numbers decided (PlanConstants); empty: none
 };
 
 /// Made before the scene's acceleration structure is built; for a scene that has one
@@ -39,9 +40,9 @@ ExecutionPlan plan_execution(const Options& options, const SceneProperties& scen
                              const DeviceProperties& device);
 
 /// Whether the surfaces of scenes with these kinds of BSDFs (SceneProperties) are shaded faster in
-/// order: where warps would meet many, or one that is much longer than the others. Kernels for each
-/// kind give no more (results/log/2026-11-material-cost.md).
-bool order_pays_for(std::uint32_t bsdf_kinds);
+/// order: where warps would meet more than `few`, or one that is much longer than the others.
+/// Kernels for each kind give no more (results/log/2026-11-material-cost.md).
+bool order_pays_for(std::uint32_t bsdf_kinds, double few);
 
 /// Whether trees are built and rays traced by a CUDA device.
 inline bool is_on_cuda(const Options& options) {

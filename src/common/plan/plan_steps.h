@@ -41,16 +41,24 @@ struct TreeTimes {
 
 /// Rays of an image of `spp` samples, shadow rays included: an estimate, since nobody knows how
 /// many paths leave the scene. As many pixels as are rendered.
-double expected_rays(double pixels, const ImageSettings& image);
+double expected_rays(double pixels, const ImageSettings& image, const PlanConstants& c = {});
 
 /// Seconds of so many rays on threads of a CPU.
-double expected_cpu_trace_s(double rays, int threads);
+double expected_cpu_trace_s(double rays, int threads, const PlanConstants& c = {});
 
 /// What each builder that --builder auto may take is expected to cost. `limit_s`: the rendering
-/// ends then, 0: it does not. The rates were measured on a host of 16 cores with an H200
-/// (results/log/2026-11-whole-process.md) and are scaled by a device's multiprocessors or threads;
-/// they are to choose by, not to plan a day with.
+/// ends then, 0: it does not. The rates (PlanConstants; results/log/2026-11-whole-process.md) are
+/// scaled by a device's multiprocessors or threads; they are to choose by, not to plan a day with.
 std::vector<TreeTimes> expected_tree_times(const TreeWork& work, const DeviceProperties& device,
                                            double limit_s);
+
+/// What building took on the host; of `splits`: by sbvh.
+struct BuilderSeconds {
+  double sah = 0, sah_reinsert = 0, splits = 0;
+};
+
+/// Gives the constants of the host's builders the values by which these times are expected.
+void fit_builders(PlanConstants& constants, double triangles, int threads,
+                  const BuilderSeconds& seconds);
 
 }  // namespace pt

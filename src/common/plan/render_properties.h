@@ -8,6 +8,7 @@
 
 #include "common/choices/accel.h"
 #include "common/options/options.h"
+#include "common/plan/plan_constants.h"
 
 namespace pt {
 
@@ -48,6 +49,7 @@ struct DeviceProperties {
   std::size_t block_shared_bytes = 227 * 1024;  ///< most shared memory of a block
   int block_threads_max = 1024;
   int multiprocessors = 132;
+  PlanConstants constants{};  ///< an H200's, or those of a calibration
 };
 
 /// This machine's processor.

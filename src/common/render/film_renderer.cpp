@@ -33,6 +33,7 @@ FilmRenderer::FilmRenderer(const ExecutionPlan& plan, const SceneData& scene)
 
 void FilmRenderer::describe_plan(RenderReport& report) const {
   report.plan = plan_.decisions;
+  report.calibration = plan_.calibration;
   report.mode = to_string(plan_.mode);
   if (plan_.mode != Mode::wavefront) return;
   report.stages = to_string(plan_.fused ? Stages::fused : Stages::split);
