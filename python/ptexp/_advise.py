@@ -105,12 +105,13 @@ class Calibration(NamedTuple):
         return self.text.rstrip("\n")
 
 
-def calibrate(*, device: str = "auto", threads: int = 0) -> Calibration:
+def calibrate(*, device: str = "auto", threads: int = 0, sms: int = 0) -> Calibration:
     """Measures in at most 30 s the numbers by which auto decides on a device, and stores them.
 
     Args:
         device: as for :func:`render`, one device.
         threads: of the CPU; 0: one per core.
+        sms: multiprocessors of a GPU to use; 0: all.
 
     Returns:
         The :class:`Calibration`.
@@ -120,8 +121,7 @@ def calibrate(*, device: str = "auto", threads: int = 0) -> Calibration:
         KeyboardInterrupt: after Ctrl-C.
     """
     given: Dict[str, Any] = {"device": device}
-    if threads:
-        given["threads"] = threads
+    given.update({name: value for name, value in (("threads", threads), ("sms", sms)) if value})
     found, raised = _ptexp.calibrate(to_words(given))
     if raised is not None:
         raise raised

@@ -100,6 +100,12 @@ TEST(Calibration, ASizeChangesWhereItIsClearlyBetter) {
   EXPECT_EQ(fitted(12, 10, 8), 4);
 }
 
+Options with_threads(int threads) {
+  Options options;
+  options.threads = threads;
+  return options;
+}
+
 /// A device on which renders take planted times, by the values of options.
 struct PlantedRenders {
   std::function<double(std::map<std::string, std::string>&)> ms;
@@ -119,7 +125,7 @@ struct PlantedRenders {
       run.counts.rays = 1000, run.counts.shadow_rays = 500;
       return std::optional(run);
     };
-    return calibrate(timer, calibration_key(device, 2), device.properties);
+    return calibrate(timer, calibration_key(device, with_threads(2)), device.properties);
   }
 };
 
@@ -146,7 +152,7 @@ TEST(Calibration, OfACpuFindsPlantedConstants) {
   EXPECT_TRUE(is_measured(c, &C::sah_s));
   EXPECT_TRUE(found.kept.empty()) << found.kept.front();
   EXPECT_FALSE(is_measured(c, &C::few_paths));
-  EXPECT_EQ(found.key, calibration_key(cpu, 2));
+  EXPECT_EQ(found.key, calibration_key(cpu, with_threads(2)));
   // A plan by it follows paths alone.
   cpu.properties.constants = c;
   SceneProperties spheres;
@@ -226,12 +232,16 @@ TEST(Calibration, TheFileIsOfDeviceThreadsDriverAndVersion) {
   const Cache cache;
   std::set<std::string> files;
   const auto add = [&](const DeviceInfo& device, int threads) {
-    return files.insert(calibration_path(calibration_key(device, threads))).second;
+    return files.insert(calibration_path(calibration_key(device, with_threads(threads)))).second;
   };
   EXPECT_TRUE(add(planted_gpu(), 2));
   EXPECT_FALSE(add(planted_gpu(), 2));
   EXPECT_TRUE(add(planted_gpu(), 3));
   EXPECT_TRUE(add(planted_gpu(64), 2));
+  Options part = with_threads(2);
+  part.limits.sms = 64;
+  EXPECT_FALSE(files.insert(calibration_path(calibration_key(planted_gpu(), part))).second)
+      << "of as many multiprocessors";
   DeviceInfo other = planted_gpu();
   other.driver = "CUDA 12.4";
   EXPECT_TRUE(add(other, 2));
@@ -241,7 +251,7 @@ TEST(Calibration, TheFileIsOfDeviceThreadsDriverAndVersion) {
   EXPECT_TRUE(add(other, 0));
   other.properties = cpu_properties(3);
   EXPECT_TRUE(add(other, 0));
-  CalibrationKey key = calibration_key(planted_gpu(), 2);
+  CalibrationKey key = calibration_key(planted_gpu(), with_threads(2));
   key.version = "0.0.1";
   EXPECT_TRUE(files.insert(calibration_path(key)).second);
   for (const std::string& file : files) {
@@ -255,7 +265,7 @@ TEST(Calibration, WhatIsStoredIsAppliedToItsDeviceAlone) {
   const Cache cache;
   const DeviceInfo gpu = planted_gpu();
   EXPECT_EQ(applied(gpu, "auto"), PlanConstants());
-  const Calibration stored = planted_calibration(calibration_key(gpu, 2));
+  const Calibration stored = planted_calibration(calibration_key(gpu, with_threads(2)));
   const std::string file = store_calibration(stored);
   std::vector<std::string> warnings;
   const PlanConstants found = applied(gpu, "auto", &warnings);
@@ -276,7 +286,7 @@ TEST(Calibration, WhatIsStoredIsAppliedToItsDeviceAlone) {
 TEST(Calibration, AFileIsReplacedAtOnce) {
   const Cache cache;
   const DeviceInfo gpu = planted_gpu();
-  Calibration calibration = planted_calibration(calibration_key(gpu, 2));
+  Calibration calibration = planted_calibration(calibration_key(gpu, with_threads(2)));
   const std::string file = store_calibration(calibration);
   const std::string hash = applied(gpu, "auto").calibration;
   set_measured(calibration.constants, &C::scan_primitives, 34);
@@ -293,7 +303,8 @@ TEST(Calibration, AFileIsReplacedAtOnce) {
 TEST(Calibration, ABrokenFileIsIgnoredWithOneWarning) {
   const Cache cache;
   const DeviceInfo gpu = planted_gpu();
-  const std::string file = store_calibration(planted_calibration(calibration_key(gpu, 2)));
+  const std::string file =
+      store_calibration(planted_calibration(calibration_key(gpu, with_threads(2))));
   const std::string whole = read_text(file);
   const auto changed = [&](const std::string& from, const std::string& to) {
     std::string text = whole;
@@ -356,7 +367,7 @@ TEST(Calibration, OfARenderIsInItsReportAndItsPlan) {
   EXPECT_EQ(before.report.accel, "brute");
   DeviceInfo cpu;
   cpu.properties = cpu_properties(2);
-  store_calibration(planted_calibration(calibration_key(cpu, 2)));
+  store_calibration(planted_calibration(calibration_key(cpu, with_threads(2))));
   const RenderResult after = session.render(command, hooks, {});  // of the same session
   EXPECT_EQ(after.report.calibration.size(), 16u);
   EXPECT_EQ(after.report.accel, "bvh2");

@@ -184,6 +184,10 @@ std::vector<SubcommandOption<CalibrateCommand>> calibrate_options() {
        [](C& c, S v) {
          c.settings.push_back({&find_option("threads"), v});
        }},
+      {"sms", "N [0]", "On CUDA: multiprocessors to use, by a green context; 0: all",
+       [](C& c, S v) {
+         c.settings.push_back({&find_option("sms"), v});
+       }},
       {"quiet", nullptr, "Prints the file's name alone", [](C& c, S) { c.is_quiet = true; }},
   };
 }

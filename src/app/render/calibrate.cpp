@@ -328,9 +328,9 @@ std::optional<Calibration> calibrate(const CalibrationRequest& request) {
   if (devices.size() > 1)
     throw Error(fmt::format("--device {}: a calibration is of one device",
                             find_option("device").text(options)));
-  const CalibrationKey key = calibration_key(devices.front(), options.threads);
+  const CalibrationKey key = calibration_key(devices.front(), options);
   (void)writable_calibration_path(key);
-  DeviceProperties device = devices.front().properties;
+  DeviceProperties device = limit_device(devices.front().properties, options.limits);
   device.host_threads = key.threads;
   SessionTimer session(request);
   const CalibrationTimer timer{[&](const WayOptions& way) { return session.render(way); },

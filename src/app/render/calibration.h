@@ -27,8 +27,8 @@ struct CalibrationKey {
   bool operator==(const CalibrationKey&) const = default;
 };
 
-/// `threads`: --threads; 0: all.
-CalibrationKey calibration_key(const DeviceInfo& device, int threads);
+/// By --threads and --sms of the options.
+CalibrationKey calibration_key(const DeviceInfo& device, const Options& options);
 
 /// $XDG_CACHE_HOME/ptexp/calibration-KEY.json, or below ~/.cache; empty: there is no such folder.
 std::string calibration_path(const CalibrationKey& key);

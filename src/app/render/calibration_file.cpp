@@ -13,6 +13,7 @@
 #include "common/device/cpu/cpu_renderer.h"
 #include "common/error/error.h"
 #include "common/image/atomic_file.h"
+#include "common/plan/plan_steps.h"
 #include "common/platform/build_info.h"
 #include "common/scene/load/files/scene_files.h"
 #include "common/scene/load/files/whole_file.h"
@@ -124,10 +125,11 @@ std::optional<Calibration> cached_calibration(const CalibrationKey& key, const W
 
 }  // namespace
 
-CalibrationKey calibration_key(const DeviceInfo& device, int threads) {
-  const DeviceProperties& p = device.properties;
+CalibrationKey calibration_key(const DeviceInfo& device, const Options& options) {
+  const DeviceProperties p = limit_device(device.properties, options.limits);
   return {p.is_cuda ? device.name : cpu_model(), p.is_cuda ? p.multiprocessors : 0,
-          p.is_cuda ? cpu_threads(threads) : p.threads, device.driver, build_info().version};
+          p.is_cuda ? cpu_threads(options.threads) : p.threads, device.driver,
+          build_info().version};
 }
 
 std::string calibration_path(const CalibrationKey& key) {
@@ -184,7 +186,7 @@ Calibration read_calibration(const std::string& file) {
 void apply_calibration(const Options& options, std::vector<DeviceInfo>& devices, const Warn& warn) {
   if (options.calibration == "none") return;
   for (DeviceInfo& device : devices) {
-    const CalibrationKey key = calibration_key(device, options.threads);
+    const CalibrationKey key = calibration_key(device, options);
     std::optional<Calibration> found;
     if (options.calibration == "auto") {
       found = cached_calibration(key, warn);
