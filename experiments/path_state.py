@@ -15,7 +15,7 @@ from lib import harness
 from lib.harness import Configuration, Experiment, Plot
 from lib.kernels import kernels_of
 from lib.scene_files import add_scene_files, scene_files, short_name
-from lib.sentences import against, fastest, in_groups, listed, show, time_of
+from lib.sentences import against, fastest, in_groups, listed, relation, show, time_of
 
 BYTES = [0, 32, 64, 128, 256]
 SCENES = {
@@ -106,9 +106,11 @@ def conclude(rows, _arguments):
             if small is large:
                 continue
             more = int(large["x"]) - int(small["x"])
-            each = (time_of(large).middle - time_of(small).middle) / int(large["rays"]) * 1e6
-            lines.append(f"{scene}, {mode}: {more} more bytes are "
-                         f"{against(small, large, 'without')}, {show(each)} ns a ray")
+            verdict = against(small, large, "without")
+            if relation(time_of(small), time_of(large)) != "overlap":
+                each = (time_of(large).middle - time_of(small).middle) / int(large["rays"]) * 1e6
+                verdict += f", {show(each)} ns a ray"
+            lines.append(f"{scene}, {mode}: {more} more bytes are {verdict}")
     return lines
 
 
