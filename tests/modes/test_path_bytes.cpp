@@ -9,7 +9,7 @@
 namespace pt {
 namespace {
 
-PathState path_of(std::uint32_t index, std::uint32_t rays) {
+PathState traced_path(std::uint32_t index, std::uint32_t rays) {
   PathState path;
   path.index = index, path.rays = static_cast<std::uint16_t>(rays);
   return path;
@@ -21,9 +21,10 @@ TEST(ExtraState, IsWholeAfterEachRay) {
   for (std::uint32_t place = 0; place < 3; ++place) state.begin(place, 70 + place);
   for (std::uint32_t rays = 1; rays < 300; ++rays) {
     for (std::uint32_t place = 0; place < 3; ++place) {
-      ASSERT_TRUE(state.is_whole(place, path_of(70 + place, rays))) << rays;
-      EXPECT_FALSE(state.is_whole(place, path_of(70 + place, rays + 1))) << "a change is missing";
-      EXPECT_FALSE(state.is_whole(place, path_of(71 + place, rays))) << "another path's";
+      ASSERT_TRUE(state.is_whole(place, traced_path(70 + place, rays))) << rays;
+      EXPECT_FALSE(state.is_whole(place, traced_path(70 + place, rays + 1)))
+          << "a change is missing";
+      EXPECT_FALSE(state.is_whole(place, traced_path(71 + place, rays))) << "another path's";
       state.step(place);
     }
   }
@@ -36,11 +37,11 @@ TEST(ExtraState, EachWordIsLookedAt) {
   for (ExtraRecord& record : records) {
     for (std::uint32_t& word : record.words) {
       word ^= 0x80000000u;
-      EXPECT_FALSE(state.is_whole(0, path_of(5, 3)));
+      EXPECT_FALSE(state.is_whole(0, traced_path(5, 3)));
       word ^= 0x80000000u;
     }
   }
-  EXPECT_TRUE(state.is_whole(0, path_of(5, 3)));
+  EXPECT_TRUE(state.is_whole(0, traced_path(5, 3)));
 }
 
 // What CUDA keeps in registers is what others keep in memory.
@@ -49,9 +50,9 @@ TEST(ExtraState, RegistersAreTheSame) {
   ExtraRegisters<8> registers(settings);
   registers.begin(9);
   for (std::uint32_t rays = 1; rays < 40; ++rays) {
-    ASSERT_TRUE(registers.is_whole(path_of(9, rays)));
-    EXPECT_FALSE(registers.is_whole(path_of(9, rays + 1)));
-    EXPECT_FALSE(registers.is_whole(path_of(8, rays)));
+    ASSERT_TRUE(registers.is_whole(traced_path(9, rays)));
+    EXPECT_FALSE(registers.is_whole(traced_path(9, rays + 1)));
+    EXPECT_FALSE(registers.is_whole(traced_path(8, rays)));
     registers.step();
   }
 }
@@ -85,7 +86,7 @@ TEST(PathBytes, ABrokenRecordIsSeenInTheImage) {
   for (std::uint32_t i = 0; i < n; ++i) EXPECT_EQ(is_finite(samples[i].radiance), i != broken) << i;
 }
 
-std::vector<ImageKind> image_kinds() {
+std::vector<ImageKind> path_bytes_kinds() {
   const Settings usual{
       {"device", "cpu"}, {"width", "37"}, {"height", "23"}, {"spp", "3"}, {"max-depth", "7"}};
   std::vector<ImageKind> kinds;
@@ -103,7 +104,7 @@ std::vector<ImageKind> image_kinds() {
 }
 
 class PathBytesOf : public testing::TestWithParam<ImageKind> {};
-INSTANTIATE_TEST_SUITE_P(Images, PathBytesOf, testing::ValuesIn(image_kinds()),
+INSTANTIATE_TEST_SUITE_P(Images, PathBytesOf, testing::ValuesIn(path_bytes_kinds()),
                          [](const auto& kind) { return kind.param.name; });
 
 TEST_P(PathBytesOf, LeaveTheImageAsItIs) {
