@@ -1,5 +1,7 @@
 #include "app/options/option_list.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
 #include <utility>

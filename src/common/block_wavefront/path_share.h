@@ -18,7 +18,7 @@ struct BlockSlots {
   PathSlot* paths;
   PathRecord* media;  ///< of the paths (pack_medium); only in scenes with media
   std::uint32_t per_block;
-  ExtraState extra;  ///< of the paths, side by side; only with --path-bytes
+  ExtraState extra = {};  ///< of the paths, side by side; only with --path-bytes
 
   /// Those of one block.
   PT_HD BlockSlots of_block(std::uint32_t block) const {
