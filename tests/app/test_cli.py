@@ -454,7 +454,7 @@ class Calibrate(CommandLine):
         for choice in ("auto", "none", file):
             run = self.with_cache(*self.RENDER, "--device", "cpu", "--width", "8", "--height", "8",
                                   "--spp", "1", "--calibration", choice, "--output", "a.ppm",
-                                  "--stats", "s.json", "--csv", "s.csv")
+                                  "--quiet", "--stats", "s.json", "--csv", "s.csv")
             self.assertEqual((run.returncode, run.stderr), (0, ""))
             used.append(json.loads((self.folder / "s.json").read_text("utf-8"))["used"]["calibration"])
         with open(self.folder / "s.csv", newline="", encoding="utf-8") as rows:
