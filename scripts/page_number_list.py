@@ -253,9 +253,7 @@ SCENES = [("Cornell box (quads, brute force) | |", "cornell"), ("`boxes` | 6 k |
           ("`statue:1M` | 1 M |", STATUE), ("`terrain:1M` | 1 M |", "terrain:1M"),
           ("`instances:10K` | |", "instances:10K"), ("`instances:1M` | |", "instances:1M"),
           ("`dial:16:0:closed` | 49 k |", DIAL), ("Modern Hall, with its medium | 32 k |", HALL),
-          ("the same, plain materials | 32 k |", "modern-hall/plain.xml"),
-          ("Grey & White Room | 143 k |", ROOM),
-          ("the same, plain materials | 143 k |", "grey-white-room/plain.xml")]
+          ("Grey & White Room | 143 k |", ROOM)]
 RATES = " | {:,.0f} | {:.1f} | {:,.0f} | {:.1f}"
 
 
