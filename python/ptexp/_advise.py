@@ -3,7 +3,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Tuple, Union
 
 from . import _ptexp
 from ._errors import Error, OptionError
-from ._options import check_of_render, show_keywords, split_loading, to_words
+from ._options import OF_ONE_RENDER, check_of_render, show_keywords, split_loading, to_words
 from ._scene import PathLike, Scene, load
 
 if TYPE_CHECKING:
@@ -11,8 +11,7 @@ if TYPE_CHECKING:
 
     from ._keywords import LoadOptions
 
-_OWN = {"output", "exposure", "stats", "csv", "repeat", "warmup", "counters", "part", "explain", "checkpoint",
-        "target_error", "quiet"}
+_OWN = OF_ONE_RENDER | {"exposure", "target_error", "quiet"}
 
 
 class AdvisedWay(NamedTuple):

@@ -14,8 +14,9 @@ TABLE = {option["keyword"]: option for option in _ptexp.options()}
 _SEPARATORS = {"WxH": "x", "I/N": "/", "KIND[:A[:B]]": ":"}
 
 _LOADING = {key for key, option in TABLE.items() if option["group"] == "Scene"}
+OF_ONE_RENDER = {key for key, option in TABLE.items() if option["is_of_one_render"]}
 # What ptexp.measure decides, or has no use for
-OF_MEASURE = {"mode", "repeat", "warmup", "output", "stats", "csv", "quiet", "checkpoint", "part", "counters"}
+OF_MEASURE = OF_ONE_RENDER | {"mode", "quiet"}
 
 
 def keywords_of(function: str) -> List[str]:

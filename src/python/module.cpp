@@ -49,6 +49,7 @@ nb::list options() {
     option["placeholder"] = entry.placeholder;
     option["group"] = heading(entry.group);
     option["help"] = entry.help;
+    option["is_of_one_render"] = is_of_one_render(entry);
     option["default"] = entry.text(Options());
     list.append(option);
   }

@@ -92,15 +92,13 @@ VerifyCommand parse_verify(const Parser& parser) {
 }
 
 /// The settings that were given beside a command that renders without an image as its result, as
-/// often as it wants. Throws Error for those of files and of single renders, and `more`.
+/// often as it wants. Throws Error for those of one render, and `more`.
 std::vector<Setting> settings_beside(const Parser& parser, const char* command,
                                      std::initializer_list<std::string_view> more) {
   std::vector<Setting> settings = given_settings(parser);
-  constexpr std::array refused = {"scene",  "output",   "stats", "csv",     "repeat",
-                                  "warmup", "counters", "part",  "explain", "checkpoint"};
   for (const Setting& setting : settings) {
     const std::string& name = setting.entry->name;
-    if (std::ranges::find(refused, name) != refused.end() ||
+    if (name == "scene" || is_of_one_render(*setting.entry) ||
         std::ranges::find(more, name) != more.end())
       throw Error(fmt::format("--{}: has no effect together with {}", name, command));
   }

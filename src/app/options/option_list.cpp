@@ -476,6 +476,11 @@ const std::vector<OptionEntry>& option_list() {
   return list;
 }
 
+bool is_of_one_render(const OptionEntry& entry) {
+  if (entry.name == "quiet" || entry.name == "output") return entry.name == "output";
+  return entry.group == OptionGroup::measurement || entry.group == OptionGroup::parts;
+}
+
 const OptionEntry& find_option(std::string_view name) {
   const auto& list = option_list();
   const auto found = std::ranges::find(list, name, &OptionEntry::name);

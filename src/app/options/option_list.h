@@ -73,6 +73,10 @@ struct Setting {
 /// same bits on devices of one kind, and their samples can be added.
 bool determines_image(const OptionEntry& entry);
 
+/// Whether it is about the files, repeats and parts of one render, and so has no place beside what
+/// renders as often as it wants.
+bool is_of_one_render(const OptionEntry& entry);
+
 /// Throws std::logic_error when there is no such option: a programmer's mistake.
 const OptionEntry& find_option(std::string_view name);
 
