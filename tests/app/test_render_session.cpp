@@ -1,34 +1,19 @@
 // A scene that is rendered again: whatever was kept, the image is that of a scene loaded anew.
 #include <gtest/gtest.h>
 
-#include "app/options/check_options.h"
-#include "app/render/render_session.h"
 #include "common/film/checkpoint.h"
-#include "common/image/compare/compare.h"
+#include "render_words.h"
 #include "temp_folder.h"
 
 namespace {
 
 using namespace pt;
 
-using Words = std::vector<std::pair<std::string, std::string>>;
+using Words = OptionWords;
 
 RenderCommand command_of(const std::string& scene, const Words& more = {}) {
-  Words words{{"scene", scene}, {"width", "32"}, {"height", "24"}, {"spp", "2"}, {"device", "cpu"}};
-  words.insert(words.end(), more.begin(), more.end());
-  std::vector<Setting> settings;
-  for (const auto& [name, value] : words) settings.push_back({&find_option(name), value});
-  return make_render_command(settings);
-}
-
-RenderResult render(RenderSession& session, const RenderCommand& command) {
-  MeasureHooks hooks;
-  hooks.stop = [] { return false; };
-  return session.render(command, hooks, {});
-}
-
-std::uint64_t differences(const Image& a, const Image& b) {
-  return compare_images(a, b, 0).differing_pixels;
+  return command_from(
+      {{"scene", scene}, {"width", "32"}, {"height", "24"}, {"spp", "2"}, {"device", "cpu"}}, more);
 }
 
 /// Renders the scene by each of these, one after the other, and compares with a session each.
@@ -37,8 +22,8 @@ void expect_same_as_anew(const std::string& scene, const std::vector<Words>& com
   for (const Words& words : commands) {
     const RenderCommand command = command_of(scene, words);
     RenderSession fresh(command, {});
-    const Image image = render(kept, command).image;
-    EXPECT_EQ(differences(image, render(fresh, command).image), 0u)
+    const Image image = render_now(kept, command).image;
+    EXPECT_EQ(differing_pixels(image, render_now(fresh, command).image), 0u)
         << scene << " --" << words.front().first << ' ' << words.front().second;
   }
 }
@@ -100,7 +85,9 @@ TEST(RenderSession, PassesAddSamplesUntilSomethingChanges) {
       all.emplace_back("spp", std::to_string(in_all));
       RenderSession fresh(command_of("terrain:2000", all), {});
       fresh.change_camera() = session.scene().camera;
-      EXPECT_EQ(differences(pass.image, render(fresh, command_of("terrain:2000", all)).image), 0u);
+      EXPECT_EQ(
+          differing_pixels(pass.image, render_now(fresh, command_of("terrain:2000", all)).image),
+          0u);
     };
     expect_pass({}, 1, 1);
     expect_pass({}, 1, 2);
@@ -110,23 +97,23 @@ TEST(RenderSession, PassesAddSamplesUntilSomethingChanges) {
     expect_pass({}, 1, 3);
     expect_pass({{"mode", "megakernel"}}, 1, 1);
     expect_pass({{"mode", "megakernel"}}, 1, 2);
-    render(session, command_of("terrain:2000", words));  // two samples
+    render_now(session, command_of("terrain:2000", words));  // two samples
     expect_pass({}, 1, 3);
   }
 }
 
 TEST(RenderSession, KeepsTheSceneOrItsTree) {
   RenderSession session(command_of("terrain:2000"), {});
-  const RenderResult first = render(session, command_of("terrain:2000"));
+  const RenderResult first = render_now(session, command_of("terrain:2000"));
   EXPECT_GT(first.report.scene_ms, 0);
-  EXPECT_EQ(render(session, command_of("terrain:2000")).report.scene_ms, 0);
+  EXPECT_EQ(render_now(session, command_of("terrain:2000")).report.scene_ms, 0);
   session.change_camera().fov_degrees = 20;
-  const RenderResult moved = render(session, command_of("terrain:2000"));
-  EXPECT_GT(differences(moved.image, first.image), 0u);
+  const RenderResult moved = render_now(session, command_of("terrain:2000"));
+  EXPECT_GT(differing_pixels(moved.image, first.image), 0u);
   EXPECT_EQ(moved.report.scene.tree.build_ms, first.report.scene.tree.build_ms) << "built anew";
   const RenderResult by_options =
-      render(session, command_of("terrain:2000", {{"look-from", "3,2,1"}, {"fov", "30"}}));
-  EXPECT_GT(differences(by_options.image, moved.image), 0u);
+      render_now(session, command_of("terrain:2000", {{"look-from", "3,2,1"}, {"fov", "30"}}));
+  EXPECT_GT(differing_pixels(by_options.image, moved.image), 0u);
   EXPECT_EQ(by_options.report.scene.tree.build_ms, first.report.scene.tree.build_ms)
       << "options of the camera need no other tree";
 }
@@ -134,7 +121,7 @@ TEST(RenderSession, KeepsTheSceneOrItsTree) {
 TEST(RenderSession, KeepsTheTreeWherePlansAgree) {
   RenderSession session(command_of("terrain:2000"), {});
   const auto built_ms = [&](const Words& words) {
-    const RenderResult result = render(session, command_of("terrain:2000", words));
+    const RenderResult result = render_now(session, command_of("terrain:2000", words));
     EXPECT_EQ(result.report.process_ms.start, 0);
     EXPECT_GT(result.report.process_ms.render, 0);
     return result.report.scene.tree.build_ms;
@@ -197,12 +184,12 @@ TEST(RenderSession, OptionsGoBeforeTheScenesOwn) {
 
 TEST(RenderSession, GoesOnAfterAnError) {
   RenderSession session(command_of("cornell"), {});
-  const Image before = render(session, command_of("cornell")).image;
-  EXPECT_THROW(render(session, command_of("cornell", {{"crop", "0,0,33,5"}})), Error);
+  const Image before = render_now(session, command_of("cornell")).image;
+  EXPECT_THROW(render_now(session, command_of("cornell", {{"crop", "0,0,33,5"}})), Error);
   EXPECT_THROW(
-      render(session, command_of("cornell", {{"look-from", "1,1,1"}, {"look-at", "1,1,1"}})),
+      render_now(session, command_of("cornell", {{"look-from", "1,1,1"}, {"look-at", "1,1,1"}})),
       Error);
-  EXPECT_EQ(differences(render(session, command_of("cornell")).image, before), 0u);
+  EXPECT_EQ(differing_pixels(render_now(session, command_of("cornell")).image, before), 0u);
 }
 
 }  // namespace

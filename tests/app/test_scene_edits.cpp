@@ -6,33 +6,19 @@
 #include <numeric>
 #include <random>
 
-#include "app/options/check_options.h"
-#include "app/render/render_session.h"
 #include "common/accel/embree/embree_tree.h"
 #include "common/device/devices.h"
-#include "common/image/compare/compare.h"
 #include "common/scene/edit/scene_parameters.h"
 #include "load/mitsuba_scene.h"
+#include "render_words.h"
 
 namespace {
 
 using namespace pt;
 
-using EditWords = std::vector<std::pair<std::string, std::string>>;
-
-RenderCommand edit_command(const EditWords& more, const std::string& scene = "memory") {
-  EditWords words{
-      {"scene", scene}, {"width", "24"}, {"height", "18"}, {"spp", "1"}, {"device", "cpu"}};
-  words.insert(words.end(), more.begin(), more.end());
-  std::vector<Setting> settings;
-  for (const auto& [name, value] : words) settings.push_back({&find_option(name), value});
-  return make_render_command(settings);
-}
-
-RenderResult render_now(RenderSession& session, const RenderCommand& command) {
-  MeasureHooks hooks;
-  hooks.stop = [] { return false; };
-  return session.render(command, hooks, {});
+RenderCommand edit_command(const OptionWords& more, const std::string& scene = "memory") {
+  return command_from(
+      {{"scene", scene}, {"width", "24"}, {"height", "18"}, {"spp", "1"}, {"device", "cpu"}}, more);
 }
 
 /// Other values that the parameter can have.
@@ -75,7 +61,7 @@ RenderResult expect_as_anew(RenderSession& session, const RenderCommand& command
   RenderResult edited = render_now(session, command);
   RenderSession fresh{SceneData(session.scene())};
   const RenderResult anew = render_now(fresh, command);
-  EXPECT_EQ(compare_images(edited.image, anew.image, 0).differing_pixels, 0u);
+  EXPECT_EQ(differing_pixels(edited.image, anew.image), 0u);
   EXPECT_EQ(edited.report.scene.lights, anew.report.scene.lights);
   EXPECT_EQ(edited.report.plan, anew.report.plan);
   return edited;
@@ -92,7 +78,7 @@ std::string error_of(RenderSession& session, const RenderCommand& command) {
 }
 
 /// Changes each parameter of the scene, one after the other. Returns how many changed the image.
-int expect_edits_as_anew(const SceneData& scene, const EditWords& words) {
+int expect_edits_as_anew(const SceneData& scene, const OptionWords& words) {
   const RenderCommand command = edit_command(words);
   Editor editor(scene);
   Image before = render_now(editor.session, command).image;
@@ -107,7 +93,7 @@ int expect_edits_as_anew(const SceneData& scene, const EditWords& words) {
       editor.set(p, old);
     }
     Image after = expect_as_anew(editor.session, command).image;
-    changed += compare_images(before, after, 0).differing_pixels > 0;
+    changed += differing_pixels(before, after) > 0;
     before = std::move(after);
   }
   return changed;
@@ -145,27 +131,27 @@ SceneData scene_of(const std::string& parts) { return load_xml(view + parts).sce
 
 TEST(SceneEdits, EveryParameterWithEveryStructure) {
   const SceneData scene = scene_of(std::string(room) + instances);
-  std::vector<EditWords> all = {{{"mode", "serial"}},
-                                {{"mode", "megakernel"}},
-                                {{"mode", "wavefront"}},
-                                {{"device", "cpu:2"}},
-                                {{"accel", "bvh2"}, {"builder", "sah"}},
-                                {{"accel", "bvh2"}, {"builder", "sbvh"}},
-                                {{"accel", "cwbvh"}, {"builder", "sbvh"}},
-                                {{"accel", "cwbvh"}, {"builder", "sah-reinsert"}},
-                                {{"accel", "brute"}},
-                                {{"light-selection", "tree"}},
-                                {{"light-selection", "uniform"}}};
+  std::vector<OptionWords> all = {{{"mode", "serial"}},
+                                  {{"mode", "megakernel"}},
+                                  {{"mode", "wavefront"}},
+                                  {{"device", "cpu:2"}},
+                                  {{"accel", "bvh2"}, {"builder", "sah"}},
+                                  {{"accel", "bvh2"}, {"builder", "sbvh"}},
+                                  {{"accel", "cwbvh"}, {"builder", "sbvh"}},
+                                  {{"accel", "cwbvh"}, {"builder", "sah-reinsert"}},
+                                  {{"accel", "brute"}},
+                                  {{"light-selection", "tree"}},
+                                  {{"light-selection", "uniform"}}};
   if (!embree_version().empty()) all.push_back({{"accel", "embree"}});
-  for (const EditWords& words : all) {
+  for (const OptionWords& words : all) {
     SCOPED_TRACE(words.front().second + (words.size() > 1 ? " " + words[1].second : ""));
     EXPECT_GE(expect_edits_as_anew(scene, words), 20);
   }
 }
 
-void expect_edits_on_cuda(const std::vector<EditWords>& all) {
+void expect_edits_on_cuda(const std::vector<OptionWords>& all) {
   const SceneData scene = scene_of(std::string(room) + instances);
-  for (EditWords words : all) {
+  for (OptionWords words : all) {
     SCOPED_TRACE(words.front().second);
     words.emplace_back("device", "cuda");
     EXPECT_GE(expect_edits_as_anew(scene, words), 20);

@@ -8,16 +8,16 @@
 #include <cstdlib>
 #include <thread>
 
-#include "common/image/compare/compare.h"
 #include "common/platform/steady_seconds.h"
 #include "common/scene/prepare/prepare_steps.h"
+#include "render_words.h"
 #include "view/live_render.h"
 
 namespace {
 
 using namespace pt;
 
-using Words = std::vector<std::pair<std::string, std::string>>;
+using Words = OptionWords;
 
 constexpr double patience_s = 120;  // a machine may be busy
 
@@ -52,12 +52,13 @@ struct WatchedRender : private Watch, public LiveRender {
 };
 
 std::vector<Setting> settings_of(const Words& more = {}) {
-  Words words{{"scene", "cornell"}, {"output", "page.png"}, {"width", "32"},
-              {"height", "24"},     {"device", "cpu"},      {"spp", "13"}};
-  words.insert(words.end(), more.begin(), more.end());
-  std::vector<Setting> settings;
-  for (const auto& [name, value] : words) settings.push_back({&find_option(name), value});
-  return settings;
+  return settings_from({{"scene", "cornell"},
+                        {"output", "page.png"},
+                        {"width", "32"},
+                        {"height", "24"},
+                        {"device", "cpu"},
+                        {"spp", "13"}},
+                       more);
 }
 
 /// What a session of its own renders at once, through a camera that was moved.
@@ -65,9 +66,7 @@ Image rendered(const Words& more, const Orbit& orbit = {}) {
   const RenderCommand command = make_render_command(settings_of(more));
   RenderSession session(command, {});
   if (orbit != Orbit()) session.change_camera() = orbit_camera(session.scene().camera, orbit);
-  MeasureHooks hooks;
-  hooks.stop = [] { return false; };
-  return session.render(command, hooks, {}).image;
+  return render_now(session, command).image;
 }
 
 template <class Holds>
@@ -85,7 +84,7 @@ bool is_done(const LiveState& state) { return state.status == LiveStatus::done; 
 void expect_same(const Image& a, const Image& b) {
   ASSERT_EQ(a.width, b.width);
   ASSERT_EQ(a.height, b.height);
-  EXPECT_EQ(compare_images(a, b, 0).differing_pixels, 0u);
+  EXPECT_EQ(differing_pixels(a, b), 0u);
 }
 
 TEST(NextPass, DoublesTheSamplesWithinItsTime) {
@@ -588,9 +587,7 @@ TEST(WidthWithoutBars, IsThatOfASceneWithNothingBehind) {
 
 TEST(WidthWithoutBars, IsOnlyForScenesAndUsersThatSetNone) {
   const auto width = [](const Words& words) {
-    std::vector<Setting> settings;
-    for (const auto& [name, value] : words) settings.push_back({&find_option(name), value});
-    return LiveRender(settings, {}).state().settings.size.width;
+    return LiveRender(settings_from(words), {}).state().settings.size.width;
   };
   const Words plain{{"scene", "cornell"}, {"output", "page.png"}, {"device", "cpu"}};
   EXPECT_EQ(width(plain), 300);

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "render_words.h"
 #include "view/change_settings.h"
 #include "view/live_render.h"
 #include "view/view_site.h"
@@ -11,15 +12,14 @@
 namespace pt {
 namespace {
 
-std::vector<Setting> page_settings(
-    const std::vector<std::pair<std::string, std::string>>& more = {}) {
-  std::vector<std::pair<std::string, std::string>> words{
-      {"scene", "cornell"}, {"output", "page.png"}, {"width", "16"},
-      {"height", "12"},     {"device", "cpu"},      {"spp", "7"}};
-  words.insert(words.end(), more.begin(), more.end());
-  std::vector<Setting> settings;
-  for (const auto& [name, value] : words) settings.push_back({&find_option(name), value});
-  return settings;
+std::vector<Setting> page_settings(const OptionWords& more = {}) {
+  return settings_from({{"scene", "cornell"},
+                        {"output", "page.png"},
+                        {"width", "16"},
+                        {"height", "12"},
+                        {"device", "cpu"},
+                        {"spp", "7"}},
+                       more);
 }
 
 /// Nobody watches, so that nothing is rendered.
