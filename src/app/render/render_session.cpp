@@ -133,9 +133,8 @@ bool RenderSession::update(Prepared& ready, const Options& options,
   changes.lights |= !prepares_alike(plans.front(), ready.plans.front());
   if (!std::ranges::equal(plans, ready.plans, renders_alike)) ready.rendering.reset();
   ready.plans = std::move(plans);
-  const bool is_rebuilt = prepare_changes(scene, changes, ready.plans.front(), ready.built_cost);
-  if (changes.any()) describe_scene(scene, ready.facts, changes.move_surfaces());
-  if (is_rebuilt) ready.built_cost = ready.facts.tree.sah_cost;
+  prepare_changes(scene, changes, ready.plans.front(), ready.facts.tree, ready.built_cost);
+  if (changes.any()) describe_scene(scene, ready.facts, false);
   if (ready.rendering && !ready.rendering->renderer().set_scene(scene, changes))
     ready.rendering.reset();
   return true;

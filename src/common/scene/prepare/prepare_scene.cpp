@@ -166,12 +166,6 @@ bool resolve_changes(SceneData& scene, const SceneData& source, const SceneChang
   return true;
 }
 
-bool prepare_changes(SceneData& scene, const SceneChanges& changes, const ExecutionPlan& plan,
-                     double built_cost) {
-  return scene.traits.lighting == Lighting::full &&
-         prepare_changed_triangles(scene, changes, plan, built_cost);
-}
-
 void prepare_scene(SceneData& scene, const Options& options) {
   DeviceProperties device = cpu_properties(options.threads);
   device.is_cuda = is_on_cuda(options);

@@ -39,10 +39,10 @@ bool resolve_changes(SceneData& scene, const SceneData& source, const SceneChang
 /// Prepares again what depends on the changes that were resolved, for a plan that
 /// has_same_structure: the lists of lights, the tree over instances, or, refitted, that over
 /// triangles. It is built anew where its cost has grown by a third from `built_cost`, its
-/// TreeFacts::sah_cost when it was built; true then. The image's bits are those of a scene that is
-/// prepared anew.
-bool prepare_changes(SceneData& scene, const SceneChanges& changes, const ExecutionPlan& plan,
-                     double built_cost);
+/// TreeFacts::sah_cost when it was built. `tree` and `built_cost` become those of the scene as it
+/// is now. The image's bits are those of a scene that is prepared anew.
+void prepare_changes(SceneData& scene, const SceneChanges& changes, const ExecutionPlan& plan,
+                     TreeFacts& tree, double& built_cost);
 
 /// A view of `scene` in host memory, valid while `scene` is neither changed nor destroyed.
 Scene host_view(const SceneData& scene, int width, int height);

@@ -47,10 +47,6 @@ void list_emitters(SceneData& scene);
 /// built.
 void prepare_triangles(SceneData& scene, const ExecutionPlan& plan);
 
-/// See prepare_changes().
-bool prepare_changed_triangles(SceneData& scene, const SceneChanges& changes,
-                               const ExecutionPlan& plan, double built_cost);
-
 /// What tree is to be built for a structure, on either device. Embree, which builds its own, wants
 /// the triangles alone.
 TreeOptions tree_options(Accel accel, TreeBuilder builder);

@@ -11,6 +11,7 @@
 #include "common/scene/data/scene_data.h"
 #include "common/scene/data/scene_facts.h"
 #include "common/scene/prepare/list_lights.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {
@@ -104,28 +105,30 @@ namespace {
 /// time.
 constexpr double refit_cost_max = 4.0 / 3.0;
 
-double cost_of(const SceneData& scene) {
-  return tree_facts(summarize(scene.tree), scene.triangle_count()).sah_cost;
+TreeFacts facts_of_tree(const SceneData& scene) {
+  return tree_facts(summarize(scene.tree), scene.triangle_count());
 }
 
 }  // namespace
 
-bool prepare_changed_triangles(SceneData& scene, const SceneChanges& changes,
-                               const ExecutionPlan& plan, double built_cost) {
-  bool is_rebuilt = false;
+void prepare_changes(SceneData& scene, const SceneChanges& changes, const ExecutionPlan& plan,
+                     TreeFacts& tree, double& built_cost) {
+  if (scene.traits.lighting != Lighting::full) return;
   if (changes.move_surfaces()) {
     scene.embree.reset();  // it has pointers into the tree
     if (is_device_builder(plan.builder)) {
       check_geometry(scene.meshes, scene.instances);
     } else if (changes.vertices) {
       refit_triangle_tree(scene.tree, scene.meshes, scene.instances);
-      is_rebuilt = cost_of(scene) > refit_cost_max * built_cost;
     } else {
       rebuild_instance_tree(scene.tree, scene.instances);
     }
-    if (is_rebuilt) {
+    tree = facts_of_tree(scene);
+    if (changes.vertices && tree.sah_cost > refit_cost_max * built_cost) {
       scene.tree = build_triangle_tree(scene.meshes, scene.instances,
                                        tree_options(plan.accel, plan.builder));
+      tree = facts_of_tree(scene);
+      built_cost = tree.sah_cost;
     }
     if (plan.accel == Accel::embree) scene.embree = std::make_shared<const EmbreeTree>(scene.tree);
   }
@@ -133,7 +136,6 @@ bool prepare_changed_triangles(SceneData& scene, const SceneChanges& changes,
   if (changes.instances && !scene.instances.empty()) scene.to_world = instance_transforms(scene);
   if (changes.lights || changes.move_surfaces())
     scene.light_list = list_lights(scene, scene_bounds(scene), plan.light_selection);
-  return is_rebuilt;
 }
 
 }  // namespace pt
