@@ -205,6 +205,8 @@ class Converter:
         if not isinstance(name, str):
             raise Error(f"{place}: the key is no text")
         value = _plain(value)
+        if isinstance(value, dict) and value.get("type") == "lookat":
+            return self.look_at(name, value, place)
         if isinstance(value, dict):
             return self.object(name, value, place, is_top)
         if isinstance(value, (str, os.PathLike)):
@@ -213,6 +215,12 @@ class Converter:
             kind = {bool: "boolean", int: "integer"}.get(type(value), "float")
             return (kind, [("name", name), ("value", _text(value))], [], place)
         return self.array(name, value, place)
+
+    def look_at(self, name: str, given: Dict[str, Any], place: str) -> Element:
+        if set(given) - {"up"} != {"type", "origin", "target"}:
+            raise Error(f"{place}: {', '.join(given)}; expected type, origin, target and perhaps up")
+        vectors = [(key, _joined(_numbers(value, f"{place}[{key!r}]"))) for key, value in given.items() if key != "type"]
+        return ("transform", [("name", name)], [("lookat", vectors, [], place)], place)
 
     def array(self, name: str, value: Any, place: str) -> Element:
         is_transform = _has(value, "matrix")

@@ -41,7 +41,9 @@ class Scene:
                 what a Mitsuba file can have (docs/scenes.md), by the same names, as
                 ``mitsuba.cornell_box()`` returns it. Lists or arrays of three numbers are vectors or
                 linear RGB, those of 4x4, 3x4 or 3x3 transforms; arrays and transforms of numpy,
-                drjit and Mitsuba's variants are taken. ``{"type": "ref", "id": "red"}`` refers to
+                drjit and Mitsuba's variants are taken. A matrix does not tell the target of a view;
+                ``{"type": "lookat", "origin": ..., "target": ..., "up": ...}``, a transform as well,
+                keeps it for :attr:`params`. ``{"type": "ref", "id": "red"}`` refers to
                 what has the key "red". A "mesh" has ``vertices`` (n, 3), ``triangles`` (m, 3) and
                 may have ``normals`` (n, 3) and ``uvs`` (n, 2); a "bitmap" or "envmap" ``data``
                 (height, width, 1 to 4), linear floats or sRGB integers, or ``bitmap``, a

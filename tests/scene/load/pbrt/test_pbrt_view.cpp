@@ -52,6 +52,25 @@ TEST(PbrtCamera, AMirrorBeforeItMirrorsTheImage) {
   expect_near(ray_at(scene, 30, 5).direction, glm::normalize(Vec3(1.0f, 0.5f, -1.0f)));
 }
 
+TEST(PbrtCamera, TheViewIsTheWrittenOne) {
+  const auto camera = [](const std::string& transform) {
+    return load_pbrt_silently(with_camera(transform, "\"perspective\"")).camera;
+  };
+  const std::string look = "LookAt 1.1 2.3 3.7  2 0.1 2.5  0 1 0.3";
+  for (const std::string before : {"", "Scale -1 1 1 ", "Scale 2 2 2 "}) {
+    const CameraParameters written = camera(before + look);
+    EXPECT_EQ(written.look_from, Vec3(1.1f, 2.3f, 3.7f)) << before;
+    EXPECT_EQ(written.look_at, Vec3(2, 0.1f, 2.5f)) << before;
+    EXPECT_EQ(written.up, Vec3(0, 1, 0.3f)) << before;
+  }
+  // Other views: moved, turned, or without its transformation.
+  expect_near(camera(look + " Translate 5 0 0").look_from, {1.1f - 5, 2.3f, 3.7f});
+  const CameraParameters turned = camera("Rotate 180 0 1 0 " + look);
+  expect_near(glm::normalize(turned.look_at - turned.look_from),
+              -glm::normalize(Vec3(0.9f, -2.2f, -1.2f)));
+  expect_near(camera(look + " Identity").look_from, Vec3(0.0f));
+}
+
 TEST(PbrtCamera, TransformIsReadColumnByColumn) {
   // To the camera's space: x -> y -> z -> x, then moved by (1, 2, 3).
   const SceneData scene = load_pbrt_silently(

@@ -88,6 +88,26 @@ inline void look_along_z(const Affine& to_world, CameraParameters& camera) {
   camera.up = to_world.vector({0, 1, 0});
 }
 
+/// A view as a file has written it.
+struct LookAt {
+  Vec3 origin, target;
+  Vec3 up{0, 0, 0};  ///< 0: any
+};
+
+/// Gives a camera that maps have placed the origin, target and up direction that its file has
+/// written, where they mean the same view.
+inline void take_written_view(const LookAt& look, CameraParameters& camera) {
+  const auto differ = [](const Vec3& a, const Vec3& b) {  // by more than rounding
+    return !(glm::length(glm::normalize(a) - glm::normalize(b)) < 1e-5f);
+  };
+  const Vec3 forward = camera.look_at - camera.look_from;
+  if (!(glm::length(look.origin - camera.look_from) <= 64.0f * half_ulp * max_abs(look.origin)) ||
+      differ(forward, look.target - look.origin))
+    return;
+  camera.look_from = look.origin, camera.look_at = look.target;
+  if (!differ(glm::cross(camera.up, forward), glm::cross(look.up, forward))) camera.up = look.up;
+}
+
 /// A camera that frames what there is, where that has a size.
 inline void frame_finite_scene(SceneData& scene) {
   const Bounds bounds = scene_bounds(scene);

@@ -123,23 +123,6 @@ double focal_length_mm(const Object& sensor) {
   return *length;
 }
 
-/// Gives the camera, which to_world has placed, the target and up direction that a <lookat> has
-/// written, where they mean the same view.
-void take_written_target(const Object& sensor, CameraParameters& camera) {
-  const Element* const transform = sensor.find_transform("to_world");
-  if (transform == nullptr) return;
-  const std::optional<LookAt> look = read_look_at(*transform);
-  if (!look || look->origin != camera.look_from) return;
-  constexpr float angle_max = 1e-6f;  // far less than a pixel's
-  const auto differ = [&](const Vec3& a, const Vec3& b) {
-    return !(glm::length(glm::normalize(a) - glm::normalize(b)) < angle_max);
-  };
-  const Vec3 forward = camera.look_at - camera.look_from;
-  if (differ(forward, look->target - look->origin)) return;
-  camera.look_at = look->target;
-  if (!differ(glm::cross(camera.up, forward), glm::cross(look->up, forward))) camera.up = look->up;
-}
-
 /// Mitsuba's camera looks along its z, with y up and x to the left of the image.
 void place_camera(Context& context, const Object& sensor, bool may_scale) {
   const Affine map = sensor.transform("to_world");
@@ -148,7 +131,9 @@ void place_camera(Context& context, const Object& sensor, bool may_scale) {
   CameraParameters& camera = context.scene.camera;
   look_along_z(map, camera);
   camera.mirrored = map.determinant() < 0.0f;
-  take_written_target(sensor, camera);
+  if (const Element* const transform = sensor.find_transform("to_world")) {
+    if (const auto look = read_look_at(*transform)) take_written_view(*look, camera);
+  }
   const float size = glm::length(forward);
   const auto differs = [&](float a, float b) { return std::abs(a - b) > 1e-3f * size; };
   const bool scales =

@@ -46,6 +46,7 @@ void place_camera(Context& context, const Entity& entity) {
   CameraParameters& camera = context.scene.camera;
   look_along_z(map, camera);
   camera.mirrored = map.determinant() > 0.0f;
+  if (const auto& look = context.description.camera_look_at) take_written_view(*look, camera);
 }
 
 void read_perspective(Context& context, const Entity& entity) {

@@ -14,6 +14,7 @@
 
 #include "common/math/transform.h"
 #include "common/math/vec.h"
+#include "common/scene/load/files/importer.h"
 #include "common/scene/load/files/load_options.h"
 #include "common/scene/load/files/whole_file.h"
 
@@ -112,12 +113,7 @@ Affine read_transform(const Element& element);
 /// The same; a map that cannot be inverted is an Error.
 Affine read_invertible_transform(const Element& element);
 
-/// What a <lookat> in a <transform> says.
-struct LookAt {
-  Vec3 origin, target;
-  Vec3 up{0, 0, 0};  ///< 0: any
-};
-/// The last one of a <transform>, if it has any. Throws Error.
+/// The last <lookat> of a <transform>, if it has any. Throws Error.
 std::optional<LookAt> read_look_at(const Element& transform);
 
 /// True where the linear part of `map` flattens space, within the precision of its numbers.

@@ -5,10 +5,12 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 
 #include "common/math/transform.h"
+#include "common/scene/load/files/importer.h"
 #include "common/scene/load/pbrt/syntax/parameters.h"
 
 namespace pt::pbrt {
@@ -60,7 +62,8 @@ struct Description {
   bool is_earlier = false;       ///< of pbrt-v3 or before, as what it uses shows
   // Null: the file has none.
   EntityPointer camera, film, sampler, integrator, filter;
-  std::string camera_medium;  ///< by name; empty: a vacuum
+  std::optional<LookAt> camera_look_at;  ///< the last LookAt before it
+  std::string camera_medium;             ///< by name; empty: a vacuum
   std::vector<EntityPointer> lights;
   // By name:
   std::map<std::string, EntityPointer> materials, media, float_textures, spectrum_textures;

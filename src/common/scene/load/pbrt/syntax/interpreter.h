@@ -10,6 +10,7 @@ namespace pt::pbrt {
 
 struct GraphicsState {
   Affine to_world;
+  std::optional<LookAt> look_at;  ///< the last one
   bool moves_start = true;  ///< transformations apply at the beginning of the shutter's interval
   bool reverse = false;
   ColorSpace space = ColorSpace::srgb;

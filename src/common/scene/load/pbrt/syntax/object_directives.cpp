@@ -87,6 +87,7 @@ void Interpreter::option(const Directive& directive) {
     }
     coordinate_systems_["camera"] = inverse(state_.to_world);
     description_.camera = entity;
+    description_.camera_look_at = state_.look_at;
     description_.camera_medium = state_.media.outside;
   } else if (directive.name == "Film") {
     if (entity->type == "image") note_earlier(directive.place, "Film 'image'");

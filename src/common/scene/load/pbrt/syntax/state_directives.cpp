@@ -36,12 +36,13 @@ std::optional<Affine> read_rotate(TokenStream& tokens) {
 
 /// From the world to a camera that looks along +z, with +x to its right and +y up: pbrt's space is
 /// left-handed.
-std::optional<Affine> read_look_at(TokenStream& tokens) {
+std::optional<Affine> read_look_at(TokenStream& tokens, std::optional<LookAt>& look) {
   const DVec3 eye = read_vector(tokens), target = read_vector(tokens), up = read_vector(tokens);
   const DVec3 z = glm::normalize(target - eye);
   const DVec3 side = glm::cross(glm::normalize(up), z);
   if (!(glm::length(side) > 1e-9)) return std::nullopt;
   const DVec3 x = glm::normalize(side), y = glm::cross(z, x);
+  look = {Vec3(eye), Vec3(target), Vec3(up)};
   const auto row = [&](const DVec3& axis) { return Vec4(Vec3(axis), -glm::dot(axis, eye)); };
   return Affine{{row(x), row(y), row(z)}};
 }
@@ -67,13 +68,15 @@ constexpr std::array<std::string_view, 5> attribute_targets = {"shape", "light",
 
 constexpr std::size_t most_attributes = 100;  // each block may have its own list
 
-std::optional<Affine> read_map(const Interpreter::Directive& directive) {
+/// `look`: what the last LookAt has written.
+std::optional<Affine> read_map(const Interpreter::Directive& directive,
+                               std::optional<LookAt>& look) {
   TokenStream& tokens = directive.tokens;
   const std::string& name = directive.name;
   if (name == "Translate") return read_translate(tokens);
   if (name == "Scale") return read_scale(tokens);
   if (name == "Rotate") return read_rotate(tokens);
-  if (name == "LookAt") return read_look_at(tokens);
+  if (name == "LookAt") return read_look_at(tokens, look);
   return name == "Identity" ? Affine() : read_matrix(tokens);
 }
 
@@ -98,7 +101,7 @@ void check_finite(const Affine& map, const FileLocation& place) {
 }  // namespace
 
 void Interpreter::transform(const Directive& directive) {
-  const std::optional<Affine> map = read_map(directive);
+  const std::optional<Affine> map = read_map(directive, state_.look_at);
   if (!state_.moves_start) return;
   const bool replaces = directive.name == "Identity" || directive.name == "Transform";
   reporter_.attempt(directive.name, "is ignored", [&] {
