@@ -21,7 +21,7 @@ _MITSUBA = {
     "vertex_positions": ("vertices",),
     "vertex_normals": ("normals",),
 }
-_PARTS = ("camera", "materials", "lights", "instances", "meshes")
+_PARTS = ("camera", "materials", "lights", "instances", "meshes", "spheres")
 _VIEW = ("camera.origin", "camera.target", "camera.up")
 
 
@@ -60,6 +60,7 @@ class Params(MutableMapping):
                                      in the world, or in the space of its instances
     ``meshes.NAME.normals``          (n, 3), unit length, where the mesh has some; they
                                      do not follow the vertices
+    ``spheres.NAME.center``          a point; ``spheres.NAME.radius``: > 0
     ===============================  ===================================================
 
     Values are numbers, tuples of three and 4x4 lists of lists; numpy's arrays are taken, too.
@@ -69,7 +70,8 @@ class Params(MutableMapping):
 
     A change costs what depends on it: of materials and lights their tables, of an instance the
     tree over instances, of vertices a refit of the mesh's tree (a new tree where that would be a
-    third cheaper for rays); the value that a parameter has already, nothing. An option of the
+    third cheaper for rays), of a sphere
+    the whole preparation; the value that a parameter has already, nothing. An option of the
     camera (``look_from=``) overrides the parameter.
 
     Raises:

@@ -123,13 +123,15 @@ void SceneObject::set(std::size_t parameter, std::span<const float> values) {
   session_->change_scene(p.changes, [&](SceneData& scene) { p.set(scene, values); });
 }
 
-void SceneObject::report_defaults(nb::dict& defaults) const {
+nb::dict SceneObject::defaults() const {
   const SceneDefaults& d = session_->scene().defaults;
+  nb::dict result;
   const auto note = [&](const char* name, const std::optional<int>& value) {
-    if (value) defaults[name] = *value;
+    if (value) result[name] = *value;
   };
   note("width", d.width), note("height", d.height), note("spp", d.spp);
   note("max_depth", d.max_depth), note("rr", d.rr_depth);
+  return result;
 }
 
 namespace {
@@ -220,12 +222,6 @@ nb::tuple calibrate(const Words& words) {
   return nb::make_tuple(result, raised);
 }
 
-nb::dict defaults(const SceneObject& self) {
-  nb::dict result;
-  self.report_defaults(result);
-  return result;
-}
-
 /// The array of a mesh, of floats.
 nb::object get_rows(SceneObject& self, std::size_t parameter) {
   const auto& shape = self.parameters().at(parameter).shape;
@@ -249,7 +245,7 @@ void add_scene(nb::module_& m) {
       .def("plan", plan)
       .def("advise", advise, nb::arg("words"), nb::arg("limit_s"))
       .def_prop_ro("name", [](const SceneObject& self) { return text(self.name()); })
-      .def("defaults", defaults)
+      .def("defaults", &SceneObject::defaults)
       .def("parameters", parameters)
       .def("get", &SceneObject::get)
       .def("set", [](SceneObject& self, std::size_t parameter,

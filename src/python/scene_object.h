@@ -51,7 +51,7 @@ class SceneObject {
   std::vector<float> get(std::size_t parameter);
   /// The value that it has already does nothing. Throws Error for one that it cannot have.
   void set(std::size_t parameter, std::span<const float> values);
-  void report_defaults(nanobind::dict& defaults) const;
+  nanobind::dict defaults() const;
 
  private:
   SceneObject() = default;

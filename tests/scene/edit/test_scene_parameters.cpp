@@ -150,6 +150,8 @@ SceneData scene_of_all() {
   scene.meshes[0].material = a, scene.meshes[1].material = b;
   scene.meshes[0].normals.resize(3, Vec3(0, 0, 1));
   scene.names.meshes = {{2, "bust"}};
+  scene.add_sphere({1, 2, 3}, 0.5f, a), scene.add_sphere({4, 5, 6}, 2, b);
+  scene.add_sphere({7, 8, 9}, 3, 2);
   return scene;
 }
 
@@ -185,7 +187,13 @@ TEST(SceneParameters, AreAllThatASceneHas) {
                                           "meshes.one.normals",
                                           "meshes.one_2.vertices",
                                           "meshes.bust.vertices",
-                                          "meshes.mesh_3.vertices"};
+                                          "meshes.mesh_3.vertices",
+                                          "spheres.one.center",
+                                          "spheres.one.radius",
+                                          "spheres.one_2.center",
+                                          "spheres.one_2.radius",
+                                          "spheres.sphere_2.center",
+                                          "spheres.sphere_2.radius"};
   SceneData scene = scene_of_all();
   EXPECT_EQ(names_in(scene), expected);
   const std::map<std::string, SceneChanges> stale = {
@@ -197,7 +205,9 @@ TEST(SceneParameters, AreAllThatASceneHas) {
       {"lights.sun.radiance", {.shading = true, .lights = true}},
       {"instances.1.to_world", {.instances = true}},
       {"meshes.one.vertices", {.vertices = true}},
-      {"meshes.one.normals", {.normals = true}}};
+      {"meshes.one.normals", {.normals = true}},
+      {"spheres.one_2.center", {.instances = true}},
+      {"spheres.one_2.radius", {.instances = true}}};
   int found = 0;
   for (const SceneParameter& p : scene_parameters(scene)) {
     if (!stale.contains(p.name)) continue;
@@ -276,6 +286,12 @@ TEST(SceneParameters, AreWhatTheirNamesSay) {
   EXPECT_EQ(scene.sun.radiance, Color(9, 8, 7));
   set(scene, "materials.material_3.weight", {0.75f});
   EXPECT_EQ(scene.materials[3].parameters[0].value.x, 0.75f);
+  set(scene, "spheres.one_2.center", {5, 4, 3}), set(scene, "spheres.one_2.radius", {0.25f});
+  EXPECT_EQ(scene.spheres[1].center, Vec3(5, 4, 3));
+  EXPECT_EQ(scene.spheres[1].radius_squared, 0.0625f);
+  for (const float none : {0.0f, -1.0f, 1e-30f, 1e30f})
+    EXPECT_THROW(set(scene, "spheres.one_2.radius", {none}), Error);
+  EXPECT_EQ(scene.spheres[1].radius_squared, 0.0625f);
   set(scene, "materials.one_2.albedo", {0.1f, 0.2f, 0.3f});
   EXPECT_EQ(scene.materials[1].color(0), Color(0.1f, 0.2f, 0.3f));
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <set>
 
 #include "common/error/error.h"
@@ -13,12 +14,6 @@ namespace pt {
 namespace {
 
 using Values = std::span<const float>;
-
-void check_finite(const std::string& name, Values values) {
-  for (const float x : values) {
-    if (!std::isfinite(x)) throw Error(fmt::format("{}: {}: expected finite numbers", name, x));
-  }
-}
 
 Vec3 vector_of(Values v) { return {v[0], v[1], v[2]}; }
 std::vector<float> list_of(const Vec3& v) { return {v.x, v.y, v.z}; }
@@ -34,6 +29,7 @@ class Lister {
     add_lights();
     add_instances();
     add_meshes();
+    add_spheres();
     return std::move(list_);
   }
 
@@ -42,7 +38,8 @@ class Lister {
   template <class Get, class Set>
   void add(std::string name, std::vector<std::size_t> shape, Get get, Set set) {
     auto checked = [name, set](SceneData& scene, Values values) {
-      check_finite(name, values);
+      for (const float x : values)
+        if (!std::isfinite(x)) throw Error(fmt::format("{}: {}: expected finite numbers", name, x));
       set(scene, values);
     };
     const SceneChanges changes = changes_of(name);
@@ -51,10 +48,19 @@ class Lister {
 
   /// `part(scene)` is a reference to a vector or colour in the scene.
   template <class Part>
-  void add_vector(const std::string& name, Part part) {
+  void add_vector(const std::string& name, Part part, bool may_be_negative = true) {
     add(
         name, {3}, [part](const SceneData& scene) { return list_of(part(scene)); },
-        [part](SceneData& scene, Values v) { part(scene) = vector_of(v); });
+        [name, part, may_be_negative](SceneData& scene, Values v) {
+          if (!may_be_negative && *std::ranges::min_element(v) < 0.0f)
+            throw Error(fmt::format("{}: expected numbers of 0 or more", name));
+          part(scene) = vector_of(v);
+        });
+  }
+
+  template <class Part>
+  void add_radiance(const std::string& name, Part part) {
+    add_vector(name, part, false);
   }
 
   template <class Part>
@@ -64,33 +70,17 @@ class Lister {
         [part](SceneData& scene, Values v) { part(scene) = v[0]; });
   }
 
-  /// The radiance or intensity of a light.
-  template <class Part>
-  void add_radiance(const std::string& name, Part part) {
-    add(
-        name, {3}, [part](const SceneData& scene) { return list_of(part(scene)); },
-        [name, part](SceneData& scene, Values v) {
-          if (*std::ranges::min_element(v) < 0.0f)
-            throw Error(fmt::format("{}: expected numbers of 0 or more", name));
-          part(scene) = vector_of(v);
-        });
-  }
-
   void add_camera() {
-    add_vector(
-        "camera.origin", [](auto& s) -> auto& { return s.camera.look_from; });
-    add_vector(
-        "camera.target", [](auto& s) -> auto& { return s.camera.look_at; });
-    add_vector(
-        "camera.up", [](auto& s) -> auto& { return s.camera.up; });
-    if (!scene_.camera.orthographic) {
-      add_number(
-          "camera.fov", [](auto& s) -> auto& { return s.camera.fov_degrees; });
-      add_number(
-          "camera.aperture", [](auto& s) -> auto& { return s.camera.aperture; });
-      add_number(
-          "camera.focus_distance", [](auto& s) -> auto& { return s.camera.focus_distance; });
-    }
+    const auto part = [](auto field) {
+      return [field](auto& scene) -> auto& { return scene.camera.*field; };
+    };
+    add_vector("camera.origin", part(&CameraParameters::look_from));
+    add_vector("camera.target", part(&CameraParameters::look_at));
+    add_vector("camera.up", part(&CameraParameters::up));
+    if (scene_.camera.orthographic) return;
+    add_number("camera.fov", part(&CameraParameters::fov_degrees));
+    add_number("camera.aperture", part(&CameraParameters::aperture));
+    add_number("camera.focus_distance", part(&CameraParameters::focus_distance));
   }
 
   void add_materials() {
@@ -122,21 +112,20 @@ class Lister {
   }
 
   void add_lights() {
+    std::set<std::string> emitters, lights;  // their names need not differ in files
     for (std::uint32_t m = 0; m < scene_.materials.size(); ++m) {
       if (is_black(scene_.materials[m].emission.radiance)) continue;
-      const auto named = scene_.names.emitters.find(m);
-      const std::string& name = named == scene_.names.emitters.end() ? names_[m] : named->second;
+      const std::string name = name_of(scene_.names.emitters, m, names_[m], emitters);
       add_radiance(
-          unique("lights." + name + ".radiance"), [m](auto& s) -> auto& {
+          "lights." + name + ".radiance", [m](auto& s) -> auto& {
             return s.materials[m].emission.radiance;
           });
     }
     for (std::uint32_t i = 0; i < scene_.delta_lights.size(); ++i) {
-      const auto named = scene_.names.delta_lights.find(i);
       const std::string name =
-          named == scene_.names.delta_lights.end() ? fmt::format("light_{}", i) : named->second;
+          name_of(scene_.names.delta_lights, i, fmt::format("light_{}", i), lights);
       add_radiance(
-          unique("lights." + name + ".intensity"), [i](auto& s) -> auto& {
+          "lights." + name + ".intensity", [i](auto& s) -> auto& {
             return s.delta_lights[i].intensity;
           });
     }
@@ -155,16 +144,15 @@ class Lister {
       add(
           name, {4, 4},
           [i](const SceneData& scene) {
-            const auto& [a, b, c] = scene.instances[i].to_world.row;
-            return std::vector{a.x, a.y, a.z, a.w, b.x,  b.y,  b.z,  b.w,
-                               c.x, c.y, c.z, c.w, 0.0f, 0.0f, 0.0f, 1.0f};
+            std::vector<float> values(16, 0.0f);
+            std::memcpy(values.data(), &scene.instances[i].to_world.row, sizeof(Affine));
+            values.back() = 1.0f;
+            return values;
           },
           [i, name](SceneData& scene, Values v) {
+            static_assert(sizeof(Affine) == 12 * sizeof(float));
             Affine map;
-            for (int r = 0; r < 3; ++r) {
-              const auto* const at = &v[static_cast<std::size_t>(4 * r)];
-              map.row[r] = {at[0], at[1], at[2], at[3]};
-            }
+            std::memcpy(&map.row, v.data(), sizeof(Affine));
             if (v[12] != 0 || v[13] != 0 || v[14] != 0 || v[15] != 1 || map.determinant() == 0.0f)
               throw Error(name +
                           ": expected an affine map that can be inverted, its last row 0 0 "
@@ -189,37 +177,56 @@ class Lister {
         });
   }
 
+  /// Of what has the number i in the file; `other`: without a name there.
+  static std::string name_of(const std::map<std::uint32_t, std::string>& names, std::uint32_t i,
+                             const std::string& other, std::set<std::string>& taken) {
+    const auto own = names.find(i);
+    const std::string& given = own == names.end() ? other : own->second;
+    std::string name = given;
+    for (int n = 2; !taken.insert(name).second; ++n) name = fmt::format("{}_{}", given, n);
+    return name;
+  }
+
+  /// The name of a material in the file, or "KIND_i".
+  std::string or_material(const char* kind, std::size_t i, std::uint32_t material) const {
+    const auto named = scene_.names.materials.find(material);
+    return named == scene_.names.materials.end() ? fmt::format("{}_{}", kind, i) : named->second;
+  }
+
+  void add_spheres() {
+    std::set<std::string> taken;
+    for (std::uint32_t i = 0; i < scene_.spheres.size(); ++i) {
+      const std::string other = or_material("sphere", i, scene_.sphere_material[i]);
+      const std::string name = "spheres." + name_of({}, i, other, taken);
+      add_vector(
+          name + ".center", [i](auto& s) -> auto& { return s.spheres[i].center; });
+      add(
+          name + ".radius", {},
+          [i](const SceneData& scene) {
+            return std::vector<float>{std::sqrt(scene.spheres[i].radius_squared)};
+          },
+          [i, name](SceneData& scene, Values v) {
+            const float squared = v[0] * v[0];
+            if (!(v[0] > 0.0f && squared > 0.0f && std::isfinite(squared)))
+              throw Error(name + ".radius: expected a number above 0");
+            scene.spheres[i].radius_squared = squared;
+          });
+    }
+  }
+
   void add_meshes() {
     std::set<std::string> taken;
     for (std::uint32_t i = 0; i < scene_.meshes.size(); ++i) {
       const Mesh& mesh = scene_.meshes[i];
       if (mesh.positions.empty()) continue;
-      const auto& names = scene_.names;
-      const auto own = names.meshes.find(i);
-      const auto of_material = names.materials.find(mesh.material);
-      const std::string named = own != names.meshes.end()              ? own->second
-                                : of_material != names.materials.end() ? of_material->second
-                                                                       : fmt::format("mesh_{}", i);
-      std::string name = named;
-      for (int n = 2; !taken.insert(name).second; ++n) name = fmt::format("{}_{}", named, n);
+      const std::string name =
+          name_of(scene_.names.meshes, i, or_material("mesh", i, mesh.material), taken);
       add_rows(
           "meshes." + name + ".vertices", [i](auto& s) -> auto& { return s.meshes[i].positions; });
       if (!mesh.normals.empty())
         add_rows(
             "meshes." + name + ".normals", [i](auto& s) -> auto& { return s.meshes[i].normals; });
     }
-  }
-
-  /// Names of lights need not differ in their files.
-  std::string unique(const std::string& name) const {
-    std::string result = name;
-    const auto is_taken = [&] {
-      return std::ranges::find(list_, result, &SceneParameter::name) != list_.end();
-    };
-    const std::size_t dot = name.rfind('.');
-    for (int n = 2; is_taken(); ++n)
-      result = fmt::format("{}_{}{}", name.substr(0, dot), n, name.substr(dot));
-    return result;
   }
 
   const SceneData& scene_;
@@ -236,7 +243,7 @@ SceneChanges changes_of(std::string_view parameter) {
   changes.camera = part == "camera";
   changes.shading = part == "materials" || part == "lights";
   changes.lights = part == "lights" || (part == "materials" && value == "opacity");
-  changes.instances = part == "instances";
+  changes.instances = part == "instances" || part == "spheres";
   changes.vertices = part == "meshes" && value == "vertices";
   changes.normals = part == "meshes" && value == "normals";
   return changes;

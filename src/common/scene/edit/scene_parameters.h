@@ -1,5 +1,6 @@
 // The parameters of a scene in memory that can be changed, by name: "camera.fov",
-// "materials.red.albedo", "lights.lamp.radiance", "instances.3.to_world", "meshes.bust.vertices".
+// "materials.red.albedo", "lights.lamp.radiance", "instances.3.to_world", "meshes.bust.vertices",
+// "spheres.ball.radius".
 #pragma once
 
 #include <functional>
@@ -46,8 +47,8 @@ struct SceneParameter {
 };
 
 /// The parameters of an unprepared scene: its camera, the parameters of its materials, the radiance
-/// of its lights, the places of its instances, the vertices of its meshes and their normals. Meshes
-/// have the names of their file, else that of their material, else "mesh_N".
+/// of its lights, its instances' places, its meshes' vertices and normals, its spheres. Meshes have
+/// the names of their file; else, as spheres, that of their material, else "mesh_N", "sphere_N".
 std::vector<SceneParameter> scene_parameters(const SceneData& scene);
 
 }  // namespace pt
