@@ -1,4 +1,6 @@
 """Scene files as further arguments of an experiment."""
+import shlex
+import sys
 from pathlib import Path
 
 
@@ -11,6 +13,14 @@ def add_scene_files(parser):
 def scene_files(arguments):
     """Each configuration runs in a folder of its own: only whole paths lead anywhere."""
     return [str(Path(path).resolve()) for path in arguments.scenes]
+
+
+def renderer_of(scene):
+    """Of a Python file that makes its scene in memory: what renders it instead of ptexp, as a
+    Configuration has it; of others nothing."""
+    if not scene.endswith(".py"):
+        return {}
+    return {"launcher": shlex.quote(sys.executable), "program": str(Path(__file__).with_name("python_scene.py"))}
 
 
 def short_name(scene):

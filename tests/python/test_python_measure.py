@@ -1,15 +1,18 @@
 """measure, sweep and compare_modes: on planted times, by numpy, and against statistics of real renders."""
 import contextlib
+import csv
 import inspect
 import io
 import itertools
 import math
+import os
+import subprocess
 import sys
 import unittest
 from types import SimpleNamespace
 from unittest import mock
 
-from ptexp_package import ROOT, TestCase, np, ptexp
+from ptexp_package import PTEXP, ROOT, TestCase, np, ptexp
 
 from ptexp import _intervals, _measure
 
@@ -245,6 +248,27 @@ class Real(TestCase):
         self.assertEqual([row["paths"] for row in comparison.table], [32 * 24 * 2] * 2)
         table = ptexp.sweep("cornell", spp=(1, 4), width=16, height=16, modes=["auto"], repeat=1)
         self.assertEqual([(row["spp"], row["paths"]) for row in table], [(1, 256), (4, 1024)])
+
+    @unittest.skipIf(not PTEXP or sys.version_info < (3, 10), "experiments need the program and Python 3.10")
+    def test_an_experiment_takes_a_scene_in_memory(self):
+        make = "import ptexp\nscene = ptexp.load('cornell', width=16, height=12)\nscene.params['camera.fov'] = 15\n"
+        own = self.write("own.py", make)
+        command = [sys.executable, ROOT / "experiments/defaults.py", "--only", own, "--ptexp", PTEXP, "--device", "cpu",
+                   "--repeat", "2", "--warmup", "0", "--rounds", "1", "--output", self.folder / "results"]
+        environment = {**os.environ, "PYTHONPATH": os.environ.get("PTEXP_PYTHON_PATH", "")}
+        run = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300, check=False)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        path, = self.folder.glob("results/*/defaults-only.csv")
+        with open(path, newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        names = {}
+        exec(make, names)  # pylint: disable=exec-used
+        rays = ptexp.render(names["scene"], spp=64).stats["counts"]["rays"]
+        self.assertEqual([(row["mode"], row["status"], int(row["rays"])) for row in rows],
+                         [("megakernel", "measured", rays), ("wavefront", "measured", rays)])
+        own.write_text(make + "scene = 'cornell'\n")
+        run = subprocess.run([*command, "--fresh"], env=environment, capture_output=True, text=True, timeout=300, check=False)
+        self.assertIn("its variable `scene` is str; expected a ptexp.Scene", run.stdout + run.stderr)
 
 
 if __name__ == "__main__":
