@@ -58,10 +58,7 @@ class Lister {
         });
   }
 
-  template <class Part>
-  void add_radiance(const std::string& name, Part part) {
-    add_vector(name, part, false);
-  }
+  void add_radiance(const std::string& name, auto part) { add_vector(name, part, false); }
 
   template <class Part>
   void add_number(const std::string& name, Part part) {
@@ -196,8 +193,8 @@ class Lister {
   void add_spheres() {
     std::set<std::string> taken;
     for (std::uint32_t i = 0; i < scene_.spheres.size(); ++i) {
-      const std::string other = or_material("sphere", i, scene_.sphere_material[i]);
-      const std::string name = "spheres." + name_of({}, i, other, taken);
+      const auto own = name_of({}, i, or_material("sphere", i, scene_.sphere_material[i]), taken);
+      const auto name = "spheres." + own;
       add_vector(
           name + ".center", [i](auto& s) -> auto& { return s.spheres[i].center; });
       add(
@@ -219,7 +216,7 @@ class Lister {
     for (std::uint32_t i = 0; i < scene_.meshes.size(); ++i) {
       const Mesh& mesh = scene_.meshes[i];
       if (mesh.positions.empty()) continue;
-      const std::string name =
+      const auto name =
           name_of(scene_.names.meshes, i, or_material("mesh", i, mesh.material), taken);
       add_rows(
           "meshes." + name + ".vertices", [i](auto& s) -> auto& { return s.meshes[i].positions; });
