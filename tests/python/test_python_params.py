@@ -139,20 +139,20 @@ class Params(TestCase):
 
     def test_spheres(self):
         def scene(center, radius):
-            ball = {"type": "sphere", "center": center, "radius": radius, "bsdf": {"type": "diffuse", "id": "ball"}}
+            ball = {"type": "sphere", "center": center, "radius": radius, "bsdf": {"type": "diffuse", "id": "paint"}}
             return ptexp.Scene.from_dict({"type": "scene", "sensor": {"type": "perspective", "to_world": {
                 "type": "lookat", "origin": (0, 0, 5), "target": (0, 0, 0)}}, "ball": ball, "box": {"type": "cube"},
                 "sky": {"type": "constant"}}, width=24, height=18, spp=2)
 
         changed = scene((0, 0, 2), 0.5)
         params = changed.params
-        self.assertEqual((params["spheres.ball.center"], params["ball.radius"]), ((0, 0, 2), 0.5))
+        self.assertEqual((params["spheres.paint.center"], params["paint.radius"]), ((0, 0, 2), 0.5))
         before = ptexp.render(changed)
-        params["ball.center"], params["ball.radius"] = (0.5, 0.25, 2), 0.25
+        params["paint.center"], params["paint.radius"] = (0.5, 0.25, 2), 0.25
         self.assert_other_image(ptexp.render(changed), before)
         self.assert_same_bits(ptexp.render(changed), ptexp.render(scene((0.5, 0.25, 2), 0.25)))
-        with self.assertRaisesRegex(ptexp.Error, "spheres.ball.radius: expected a number above 0"):
-            params["ball.radius"] = 0
+        with self.assertRaisesRegex(ptexp.Error, "spheres.paint.radius: expected a number above 0"):
+            params["paint.radius"] = 0
 
     def test_two_numbers_of_a_material(self):
         values = {"materials.metal.alpha_x": 0.5, "materials.metal.alpha_y": 0.5}
@@ -223,7 +223,8 @@ class Params(TestCase):
         np.testing.assert_allclose(turned.params["camera.to_world"], m, atol=1e-6)
         look = {"type": "lookat", "origin": (0.5, 1, 4), "target": np.array([0, 0.5, 0]), "up": [0, 1, 0]}
         sensor = {"type": "perspective", "to_world": look}
-        written = ptexp.Scene.from_dict({"type": "scene", "sensor": sensor, "a": {"type": "cube"}}).params
+        written = ptexp.Scene.from_dict({"type": "scene", "sensor": sensor, "a": {"type": "cube"},
+                                          "sky": {"type": "constant"}}).params
         self.assertEqual([written[f"camera.{name}"] for name in ("origin", "target", "up")],
                          [(0.5, 1, 4), (0, 0.5, 0), (0, 1, 0)])
         with self.assertRaisesRegex(ptexp.Error, "'to_world'.*expected type, origin, target and perhaps up"):
