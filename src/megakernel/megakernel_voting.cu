@@ -11,11 +11,7 @@ using PhaseVotingTraits = Traits<Accel::cwbvh, Geometry::triangles, Lighting::fu
 
 constexpr int blocks_least = 3;  // 80 registers for a thread
 
-/// The shared memory of a block with this many threads.
-constexpr std::size_t shared_bytes_of(int threads, int path_bytes) {
-  return phase_voting_bytes(threads) + static_cast<std::size_t>(threads) * path_bytes;
-}
-static_assert(phase_voting_bytes(32) == sizeof(SlotOrder) + sizeof(PhaseVotingWarp));
+static_assert(phase_voting_bytes(32, 0) == sizeof(SlotOrder) + sizeof(PhaseVotingWarp));
 
 /// The extra records of a warp's lanes, behind all warps: an array over the lanes for each record.
 __device__ ExtraState extra_of_warp(PhaseVotingWarp* warps, std::uint32_t records) {
@@ -63,7 +59,7 @@ void MegakernelCuda::launch_phase_voting_of(const SamplerSource& source,
                                             const SampleBuffer& batch) {
   constexpr auto kernel = phase_voting_megakernel<carries>;
   const int threads = plan_.block.x * plan_.block.y;
-  const std::size_t shared_bytes = shared_bytes_of(threads, plan_.path_bytes);
+  const std::size_t shared_bytes = phase_voting_bytes(threads, plan_.path_bytes);
   const WorkDivision division{Work::persistent, batch.width.divisor(), batch.height(), next_path_};
   const std::uint32_t blocks =
       resident_blocks(reinterpret_cast<const void*>(kernel), threads, shared_bytes);

@@ -814,8 +814,10 @@ TEST(ExecutionPlan, PathBytesHaveKernelsOfTheirOwnOnCuda) {
                  "--path-bytes 64: on CUDA the lean kernels of spheres and quads know none; "
                  "expected --kernel-set general");
   expect_refused(mega({{"kernel", "vote"}, {"path-bytes", "256"}}), mesh(), gpu(99),
-                 "--path-bytes 256: with --kernel vote a block of 256 threads needs 116 KiB of "
+                 "--kernel vote: a block of 256 threads, with --path-bytes 256, needs 116 KiB of "
                  "shared memory; one of this device has at most 99");
+  EXPECT_EQ(plan_of(mega(), mesh(), gpu(64)).megakernel, MegakernelKind::vote);
+  EXPECT_EQ(plan_of(mega(), mesh(), gpu(48)).megakernel, MegakernelKind::loop);
 }
 
 TEST(ExecutionPlan, EmbreeHasNoMasks) {

@@ -181,7 +181,8 @@ class Planner {
     if (scene_.instances > 0) return {loop, "phase voting knows no instances"};
     const std::int64_t threads = o_.block.threads();
     const bool may_vote = !scene_.has_masks && !scene_.has_media && threads % 32 == 0 &&
-                          threads <= phase_voting_threads_max;
+                          threads <= phase_voting_threads_max &&
+                          phase_voting_bytes(threads, o_.path_bytes) <= device_.block_shared_bytes;
     const bool is_simple = std::has_single_bit(scene_.bsdf_kinds) || known_structure();
     if (may_vote && is_simple) return {vote, "triangles of few kinds of BSDFs, blocks of warps"};
     return {loop, "blocks or materials suit no other"};

@@ -65,9 +65,9 @@ std::string plan_text(const std::vector<Decision>& decisions);
 
 /// More threads in a block would leave too few registers to warps that vote on their phase.
 inline constexpr int phase_voting_threads_max = 256;
-/// The shared memory that these need, without --path-bytes for each thread.
-constexpr std::size_t phase_voting_bytes(std::int64_t threads) {
-  return 2048 + 200 * static_cast<std::size_t>(threads);
+/// The shared memory that these need.
+constexpr std::size_t phase_voting_bytes(std::int64_t threads, int path_bytes) {
+  return 2048 + static_cast<std::size_t>(threads) * (200 + static_cast<std::size_t>(path_bytes));
 }
 /// Shared memory that a block-local wavefront needs at least, with instances: no device has room
 /// for less of it alone.

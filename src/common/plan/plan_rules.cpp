@@ -176,14 +176,13 @@ void check_megakernel(const ExecutionPlan& plan, const Options& o, const DeviceP
         fmt::format("--kernel vote: expected --accel cwbvh, --work persistent and a --block of 32 "
                     "to {} threads, a multiple of 32; {}x{} has {}",
                     phase_voting_threads_max, o.block.x, o.block.y, threads));
-  const std::size_t lanes_bytes = static_cast<std::size_t>(threads) * plan.path_bytes;
-  if (plan.megakernel == MegakernelKind::vote &&
-      phase_voting_bytes(threads) + lanes_bytes > device.block_shared_bytes)
+  const std::size_t voting_bytes = phase_voting_bytes(threads, plan.path_bytes);
+  if (plan.megakernel == MegakernelKind::vote && voting_bytes > device.block_shared_bytes)
     throw Error(fmt::format(
-        "--path-bytes {}: with --kernel vote a block of {} threads needs {} KiB of shared memory; "
+        "--kernel vote: a block of {} threads, with --path-bytes {}, needs {} KiB of shared "
+        "memory; "
         "one of this device has at most {}",
-        plan.path_bytes, threads, (phase_voting_bytes(threads) + lanes_bytes) / 1024,
-        device.block_shared_bytes / 1024));
+        threads, plan.path_bytes, voting_bytes / 1024, device.block_shared_bytes / 1024));
   if (plan.megakernel == MegakernelKind::sort &&
       !(persists && device.block_shared_bytes >= sorting_bytes_min))
     throw Error(
