@@ -181,6 +181,9 @@ class ReportNumbers(unittest.TestCase):
         for word in ("faster", "slower"):
             mine = [max(ratio, 1 / ratio) for ratio, said in ratios if said == word]
             expected += [str(len(mine)), f"{max(mine):.2f}"] if mine else []
+        for word in ("same", "ambiguous"):
+            count = sum(said == word for _, said in ratios)
+            expected += [str(count)] if count else []
         expected += self.numbers_of_grid(grid) if grid else []
         without_names = re.sub(r"\b[\w-]+:[\w:-]+", "", answer)
         self.assertEqual(re.findall(r"\d+(?:\.\d+)?(?:x\d+)?", without_names), expected, path)
