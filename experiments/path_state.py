@@ -86,6 +86,8 @@ def turn_of(rows):
         leaders.append((int(size), {best["series"], *(row["series"] for row in equal)}))
     leaders.sort(key=lambda leader: leader[0])
     (least, first), (most, _) = leaders[0], leaders[-1]
+    if least == most:
+        return f"measured with {least} bytes alone"
     turns, before = [], first
     for size, modes in leaders[1:]:
         if not modes & before:

@@ -73,9 +73,9 @@ def draw_lines(axes, rows, style):
         axes.axvline(x, color="grey", linestyle=":", linewidth=1)
         axes.text(x, 0.98, f"{status} ", rotation=90, ha="right", va="top", color="grey",
                   transform=axes.get_xaxis_transform())
-    axes.set_xscale("log")
-    axes.set_xlabel(style["x_label"])
     ticks = sorted({float(row["x"]) for row in rows})
+    axes.set_xscale("log" if ticks[0] > 0 else "linear")
+    axes.set_xlabel(style["x_label"])
     if len(ticks) <= TICKS:
         axes.set_xticks(ticks, [short(tick) for tick in ticks], rotation=30, ha="right")
         axes.xaxis.set_minor_locator(ticker.NullLocator())

@@ -41,12 +41,20 @@ def draw_point(here, y_scale, value, tip, number_of_series):
     return svg.point(value, tip, colour, shapes)
 
 
+def scale_over(places):
+    """With some air; a logarithm, unless there is a place that has none."""
+    low, high = places[0], places[-1]
+    if low <= 0:
+        air = 0.05 * (high - low) or 1
+        return Scale(low - air, high + air, False, LEFT, RIGHT)
+    air = 1.0 + 0.06 * max(1, len(places)) if low == high else (high / low) ** 0.05
+    return Scale(low / air, high * air, True, LEFT, RIGHT)
+
+
 def draw_lines(rows, style, all_series, ends):
     """The height and the content of a panel."""
-    places = sorted({number(row["x"]) for row in rows if number(row["x"])}) or [1]
-    air = 1.0 + 0.06 * max(1, len(places)) if places[0] == places[-1] else (
-        places[-1] / places[0]) ** 0.05
-    x_scale = Scale(places[0] / air, places[-1] * air, True, LEFT, RIGHT)
+    places = sorted({number(row["x"]) for row in rows} - {None}) or [1]
+    x_scale = scale_over(places)
     y_scale = Scale(*ends, style.get("log_y", False), BOTTOM, TOP)
     parts = grid(x_scale, y_scale, style, places)
     if style.get("mark") is not None and ends[0] <= style["mark"] <= ends[1]:
@@ -58,7 +66,7 @@ def draw_lines(rows, style, all_series, ends):
     for series, members in in_groups(rows, "series").items():
         index = all_series.index(series)
         found = sorted(((number(row["x"]), interval(row, style["y"])) for row in members
-                        if is_measured(row) and number(row["x"])),
+                        if is_measured(row) and number(row["x"]) is not None),
                        key=lambda pair: pair[0])
         found = [(x, value) for x, value in found if value]
         if not found:
@@ -80,7 +88,7 @@ def draw_lines(rows, style, all_series, ends):
                 parts.append(f'<g class="s{index % svg.SERIES}"><title>{svg.escape(series)}: '
                              f"target {show(target)} ms</title>{dash}</g>")
     refused = {(number(row["x"]), row["status"]) for row in rows if not is_measured(row)
-               and number(row["x"])}
+               and number(row["x"]) is not None}
     for x, status in sorted(refused):
         parts.append(svg.line(x_scale(x), TOP, x_scale(x), BOTTOM, "refused"))
         parts.append(svg.text(x_scale(x) - 4, TOP + 10, status, "note end"))

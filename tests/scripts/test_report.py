@@ -19,6 +19,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "scripts"))
 from report_parts import answers, verdicts, words  # noqa: E402
 from report_parts.axes import Scale, domain  # noqa: E402
+from report_parts.plot_lines import scale_over  # noqa: E402
 from report_parts.scaling import against_prediction  # noqa: E402
 from report_parts.tables import Device, Interval, Table, interval, read_device, read_table  # noqa: E402
 
@@ -649,6 +650,14 @@ class Report(unittest.TestCase):
         self.assertEqual(Scale(0, 10.5, False, 0, 1).ticks(), [0, 2, 4, 6, 8, 10])
         self.assertEqual([words.show(x) for x in (0.01234, 1.09096, 104678, 0)],
                          ["0.0123", "1.09", "104,678", "0"])
+
+    def test_a_place_at_zero_has_no_logarithm(self):
+        steps = [after - before for places in ([0, 128, 256], [1, 16, 256])
+                 for scale in [scale_over(places)]
+                 for before, after in zip(map(scale, places), map(scale, places[1:]))]
+        self.assertAlmostEqual(steps[0], steps[1])
+        self.assertAlmostEqual(steps[2], steps[3])
+        self.assertGreater(min(steps), 0)
 
     def test_committed_page_is_that_of_the_committed_tables(self):
         page = self.folder.parent / "page.html"
