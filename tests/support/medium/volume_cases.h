@@ -4,7 +4,6 @@
 #include <array>
 #include <functional>
 
-#include "common/medium/sample_grid.h"
 #include "common/scene/data/volume_data.h"
 #include "common/scene/prepare/prepare_steps.h"
 #include "statistics.h"
@@ -130,8 +129,7 @@ class ReferenceVolume {
 
 /// What kernels have of a scene's grids.
 inline VolumeGrids grids_of(const SceneData& scene) {
-  return {scene.grids.data(), scene.grid_values.data(), scene.majorants.data(),
-          scene.grid_nodes.data()};
+  return {scene.grids.data(), scene.grid_values.data(), scene.majorants.data()};
 }
 
 /// A scene of one medium, medium 0, whose extinction is multiplied by the volume.

@@ -1,7 +1,6 @@
 // <volume>s of heterogeneous media: what is read from files, where it lies, and where it ends.
 #include <gtest/gtest.h>
 
-#include "common/medium/sample_grid.h"
 #include "common/scene/load/files/volumes/volume_files.h"
 #include "load/expect_near.h"
 #include "load/mitsuba_scene.h"
@@ -83,7 +82,7 @@ class MitsubaVolumes : public testing::Test {
 };
 
 VolumeGrids grids_of(const SceneData& scene) {
-  return {scene.grids.data(), scene.grid_values.data(), nullptr, scene.grid_nodes.data()};
+  return {scene.grids.data(), scene.grid_values.data(), nullptr};
 }
 
 Color extinction_at(const SceneData& scene, const Vec3& point, std::size_t medium = 0) {

@@ -14,7 +14,7 @@ namespace {
 
 bool reads_nanovdb() { return false; }
 
-VolumeData read_nanovdb(const std::filesystem::path& path, const std::string&, VolumeStorage) {
+VolumeData read_nanovdb(const std::filesystem::path& path, const std::string&) {
   refuse(path.string());
 }
 
@@ -22,8 +22,7 @@ bool has_nanovdb_grid(const std::filesystem::path& path, const std::string&) {
   refuse(path.string());
 }
 
-VolumeData decode_nanovdb(std::string_view, const std::string&, const std::string& name,
-                          VolumeStorage) {
+VolumeData decode_nanovdb(std::string_view, const std::string&, const std::string& name) {
   refuse(name);
 }
 
