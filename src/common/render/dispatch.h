@@ -102,7 +102,7 @@ using CpuKindsWith =
 /// has: the plan was not checked against the table.
 template <class Function, class... T>
 void dispatch_traits(TypeList<T...>, SceneTraits traits, Function&& function) {
-  const auto called = [&](auto kind) {
+  [[maybe_unused]] const auto called = [&](auto kind) {
     const bool is_it = decltype(kind)::value() == traits;
     if (is_it) function(kind);
     return is_it;
