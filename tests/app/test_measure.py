@@ -85,7 +85,7 @@ def without_times(value):
 
 def row_without_times(row):
     return {name: text for name, text in row.items()
-            if not re.search("_ms$|_ms_|_per_s$|_launches$|^waves$|^devices$", name)}
+            if not re.search("_ms$|_ms_|_per_s$|_launches$|^launches$|^waves$|^devices$", name)}
 
 
 def resident_kib(pid):
