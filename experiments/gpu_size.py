@@ -8,12 +8,12 @@ multiprocessors. Memory and L2 cache stay those of the whole GPU, so that a mult
 small part has more of both than that of a small GPU: what is bound by memory looks better here.
 Rows with `block_kib` plan for blocks of so much shared memory, as a smaller GPU has them.
 """
-import re
 import shlex
 import sys
 
 from lib import harness
 from lib.harness import Configuration, Experiment, Plot
+from lib.kernels import multiprocessors_of
 from lib.ratios import ratio_labels, set_ratios
 from lib.scene_files import add_scene_files, scene_files, short_name
 from lib.sentences import in_groups, listed, relation, show, time_of
@@ -40,15 +40,9 @@ def add_arguments(parser):
     parser.set_defaults(repeat=5, rounds=1, warmup=1)
 
 
-def multiprocessors_of(device):
-    """Of the whole GPU; 0: the device does not say, as a CPU."""
-    found = re.search(r"(\d+) multiprocessors", getattr(device, "detail", ""))
-    return int(found.group(1)) if found else 0
-
-
 def sizes_of(arguments, device):
     """[(multiprocessors, KiB of a block or 0, options)], the whole GPU last."""
-    whole = multiprocessors_of(device)
+    whole = multiprocessors_of(getattr(device, "detail", ""))
     parts = [sms for sms in arguments.sms if not whole or sms < whole]
     sizes = [(sms, 0, f"--sms {sms}") for sms in (parts[:1] if arguments.quick else parts)]
     if not arguments.quick and BLOCK_SMS in parts:

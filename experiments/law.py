@@ -9,7 +9,6 @@ of results, else it is that of the device.
 """
 import hashlib
 import math
-import re
 import shlex
 import sys
 from dataclasses import asdict
@@ -17,6 +16,7 @@ from pathlib import Path
 
 from lib import harness, law
 from lib.harness import Experiment, HarnessError, Plot
+from lib.kernels import multiprocessors_of
 from lib.provenance import device_folder
 from lib.sentences import listed, show
 
@@ -53,10 +53,10 @@ def commit_of(facts):
 
 
 def multiprocessors(facts):
-    found = re.match(r"(\d+) multiprocessors", facts["device"]["detail"])
+    found = multiprocessors_of(facts["device"]["detail"])
     if not found:
         raise HarnessError(f"device {facts['device']['name']} ({facts['device']['detail']}): expected a GPU")
-    return int(found[1])
+    return found
 
 
 def row_of(cell, unseen, whole):

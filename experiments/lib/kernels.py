@@ -1,4 +1,6 @@
-"""The column `kernels` of ptexp's CSV: what each kernel needs (docs/statistics.md)."""
+"""What each kernel needs, from the column `kernels` of ptexp's CSV (docs/statistics.md), and the
+multiprocessors that it runs on."""
+import re
 from dataclasses import dataclass
 
 
@@ -19,6 +21,12 @@ def kernels_of(row):
         found[name] = Kernel(int(registers), int(spills), int(shared), int(threads),
                              float(occupancy))
     return found
+
+
+def multiprocessors_of(detail):
+    """Of the whole GPU, by the text of --list-devices; 0: it says none, as of a CPU."""
+    found = re.search(r"(\d+) multiprocessors", detail)
+    return int(found[1]) if found else 0
 
 
 def tracing_kernel(row):

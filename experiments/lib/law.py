@@ -3,9 +3,9 @@ table's row says of the scene. Fitted by least squares of logarithms, every fami
 weight, and judged on families that the fit has not seen."""
 import math
 import random
-import re
 from dataclasses import dataclass
 
+from lib.kernels import kernels_of
 from lib.scene_files import short_name
 
 TABLES = ["defaults", "sizes", "depth", "scenes", "dial"]
@@ -61,12 +61,6 @@ def family_of(scene):
     return scene.split("/")[-2] if "/" in scene else scene.partition(":")[0]
 
 
-def kernel_of(row, name):
-    """(bytes of shared memory, threads of a block, occupancy) from the column `kernels`; None without."""
-    found = re.search(rf"(?:^|;){name}:\d+:\d+:(\d+):(\d+):([\d.]+)", row.get("kernels", ""))
-    return found and (int(found[1]), int(found[2]), float(found[3]))
-
-
 def is_default(row):
     return all(row.get(name) in (asked, None, "") for name, asked in DEFAULTS.items())
 
@@ -82,8 +76,9 @@ def mode_of(table, row):
 
 def terms_of(mega, wave, multiprocessors):
     paths, rays, shadow = (value(wave, column) for column in ("paths", "rays", "shadow_rays"))
-    _, block, occupancy = kernel_of(mega, "megakernel")
-    threads = multiprocessors * max(round(occupancy * 2048 / block), 1) * block
+    kernel = kernels_of(mega)["megakernel"]
+    blocks = max(round(kernel.occupancy * 2048 / kernel.block_threads), 1)
+    threads = multiprocessors * blocks * kernel.block_threads
     waves = 1 - value(wave, "finish_ms_median") / value(wave, "kernel_ms_median")
     is_sorted = value(wave, "order_surfaces_launches") > 0
     return {"constant": 1.0, "drain": min(SLOTS * threads / paths, 1.0) * waves,
@@ -92,10 +87,10 @@ def terms_of(mega, wave, multiprocessors):
 
 def why_other(mega, wave):
     """Why the law, which is one of two implementations, says nothing of these."""
-    kernel = kernel_of(mega, "megakernel")
+    kernel = kernels_of(mega).get("megakernel")
     if not kernel:
         return "no kernel is named"
-    if kernel[0] < BLOCK_LOCAL_BYTES:
+    if kernel.shared_bytes < BLOCK_LOCAL_BYTES:
         return "the megakernel is a loop"
     return "" if wave.get("used_accel") == "cwbvh" else "no wide tree"
 
