@@ -9,8 +9,8 @@
 #include <string>
 
 #include "app/render/advise.h"
-#include "app/render/render_session.h"
 #include "common/error/error.h"
+#include "render_words.h"
 
 namespace pt {
 namespace {
@@ -200,16 +200,14 @@ TEST(Advise, WithoutTimeThereIsNoAdvice) {
 }
 
 TEST(Advise, OfAScene) {
-  std::vector<Setting> settings;
-  for (const auto& [name, value] : WayOptions{{"scene", "spheres"},
-                                              {"spheres", "20"},
-                                              {"device", "cpu"},
-                                              {"threads", "1"},
-                                              {"width", "16"},
-                                              {"height", "8"},
-                                              {"spp", "2"},
-                                              {"max-depth", "3"}})
-    settings.push_back({&find_option(name), value});
+  const std::vector<Setting> settings = settings_from({{"scene", "spheres"},
+                                                       {"spheres", "20"},
+                                                       {"device", "cpu"},
+                                                       {"threads", "1"},
+                                                       {"width", "16"},
+                                                       {"height", "8"},
+                                                       {"spp", "2"},
+                                                       {"max-depth", "3"}});
   RenderSession session(make_render_command(settings), {});
   std::set<std::string> tried;
   const auto never = [] { return false; };

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "app/render/calibration.h"
-#include "app/render/render_session.h"
 #include "common/error/error.h"
+#include "render_words.h"
 #include "temp_folder.h"
 
 namespace pt {
@@ -349,26 +349,21 @@ TEST(Calibration, ABrokenFileIsIgnoredWithOneWarning) {
 
 TEST(Calibration, OfARenderIsInItsReportAndItsPlan) {
   const Cache cache;
-  std::vector<Setting> settings;
-  for (const auto& [name, value] : WayOptions{{"scene", "spheres"},
+  const RenderCommand command = command_from({{"scene", "spheres"},
                                               {"spheres", "40"},
                                               {"device", "cpu"},
                                               {"threads", "2"},
                                               {"width", "8"},
                                               {"height", "8"},
-                                              {"spp", "1"}})
-    settings.push_back({&find_option(name), value});
-  const RenderCommand command = make_render_command(settings);
+                                              {"spp", "1"}});
   RenderSession session(command, {});
-  MeasureHooks hooks;
-  hooks.stop = [] { return false; };
-  const RenderResult before = session.render(command, hooks, {});
+  const RenderResult before = render_now(session, command);
   EXPECT_EQ(before.report.calibration, "");
   EXPECT_EQ(before.report.accel, "brute");
   DeviceInfo cpu;
   cpu.properties = cpu_properties(2);
   store_calibration(planted_calibration(calibration_key(cpu, with_threads(2))));
-  const RenderResult after = session.render(command, hooks, {});  // of the same session
+  const RenderResult after = render_now(session, command);  // of the same session
   EXPECT_EQ(after.report.calibration.size(), 16u);
   EXPECT_EQ(after.report.accel, "bvh2");
   EXPECT_EQ(before.image.rgb, after.image.rgb);

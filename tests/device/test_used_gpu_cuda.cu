@@ -267,8 +267,7 @@ TEST_F(CudaUsedGpu, SizesKernelsByItsPart) {
   const SceneData scene = make_scene_for(options, device);
   const auto renderer = make_renderer(options, scene, device);
   renderer->render({});
-  RenderReport report;
-  renderer->describe(report);
+  const RenderReport report = report_of(*renderer);
   EXPECT_TRUE(report.device_name.find(", 16 of ") != std::string::npos) << report.device_name;
   ASSERT_FALSE(report.kernels.empty());
   for (const KernelInfo& kernel : report.kernels) EXPECT_LE(kernel.occupancy, 1.0) << kernel.name;

@@ -60,8 +60,7 @@ TEST_P(CountersOf, EveryKernelIsCountedAndTheImageStays) {
   EXPECT_EQ(counters.rays, before.counts.rays + before.counts.shadow_rays);
   EXPECT_EQ(counters.uncounted_launches, 0u);
 
-  RenderReport report;
-  renderer->describe(report);
+  const RenderReport report = report_of(*renderer);
   std::set<std::string> launched, counted;
   for (const KernelInfo& kernel : report.kernels) launched.insert(kernel.name);
   const std::vector<KernelCounters> kernels = sum_by_kernel(counters.launches);

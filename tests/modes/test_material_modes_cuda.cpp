@@ -208,8 +208,7 @@ TEST_F(CudaKernels, KeepNoCopyOfTheScene) {
       prepare_scene(scene, options);
       const auto renderer = make_renderer(options, scene, choose_device(options.device));
       take_image(*renderer);
-      RenderReport report;
-      renderer->describe(report);
+      const RenderReport report = report_of(*renderer);
       ASSERT_FALSE(report.kernels.empty());
       for (const KernelInfo& kernel : report.kernels) {
         EXPECT_LT(kernel.spill_bytes, 1000u) << kernel.name << ", " << room.name;

@@ -201,13 +201,7 @@ TEST(Stages, AreFusedWhereRaysAreCheap) {
   const auto stages = [](const Settings& more) {
     Options options = with(Options(), {{"device", "cpu"}, {"width", "16"}, {"height", "8"}});
     apply(options, more);
-    const DeviceInfo device = choose_device(options.device);
-    const SceneData scene = make_scene_for(options, device);
-    const auto renderer = make_renderer(options, scene, device);
-    renderer->render({});
-    RenderReport report;
-    renderer->describe(report);
-    return report.stages;
+    return report_of(options).stages;
   };
   for (const char* scene : {"spheres", "cornell"}) {
     const auto of = [&](Settings more) {

@@ -86,13 +86,7 @@ class CudaVoting : public CudaTest {
  protected:
   /// What the megakernel is launched with.
   static KernelInfo kernel_of(const Settings& settings) {
-    const Options options = cuda_options("megakernel", with_image(settings));
-    const DeviceInfo device = choose_device(options.device);
-    const SceneData scene = make_scene_for(options, device);
-    const auto renderer = make_renderer(options, scene, device);
-    renderer->render({});
-    RenderReport report;
-    renderer->describe(report);
+    const RenderReport report = report_of(cuda_options("megakernel", with_image(settings)));
     const auto kernel = std::ranges::find(report.kernels, "megakernel", &KernelInfo::name);
     return kernel != report.kernels.end() ? *kernel : KernelInfo{};
   }

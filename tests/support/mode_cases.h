@@ -80,13 +80,26 @@ struct Rendered {
   RenderRun run;
 };
 
+inline RenderReport report_of(const Renderer& renderer) {
+  RenderReport report;
+  renderer.describe(report);
+  return report;
+}
+
+/// Of a render with these options.
+inline RenderReport report_of(const Options& options) {
+  const DeviceInfo device = choose_device(options.device);
+  const SceneData scene = make_scene_for(options, device);
+  const auto renderer = make_renderer(options, scene, device);
+  renderer->render({});
+  return report_of(*renderer);
+}
+
 inline Rendered take_image(Renderer& renderer, const RenderHooks& hooks = {}) {
   Rendered result;
   result.run = renderer.render(hooks);
   result.image = renderer.image();
-  RenderReport report;
-  renderer.describe(report);
-  result.counts = report.counts;
+  result.counts = report_of(renderer).counts;
   return result;
 }
 

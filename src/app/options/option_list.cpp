@@ -477,8 +477,9 @@ const std::vector<OptionEntry>& option_list() {
 }
 
 bool is_of_one_render(const OptionEntry& entry) {
-  if (entry.name == "quiet" || entry.name == "output") return entry.name == "output";
-  return entry.group == OptionGroup::measurement || entry.group == OptionGroup::parts;
+  const bool measures_or_parts =
+      entry.group == OptionGroup::measurement || entry.group == OptionGroup::parts;
+  return entry.name == "output" || (measures_or_parts && entry.name != "quiet");
 }
 
 const OptionEntry& find_option(std::string_view name) {

@@ -16,6 +16,9 @@ void reach_gpu(int index);
 /// Of the part that the thread uses, or of its GPU, whose own count is no other in a green context.
 int used_multiprocessors();
 
+/// The address of one of the driver's functions; null where the driver is missing or too old.
+void* find_in_driver(const char* name);
+
 /// The driver's functions for green contexts. They are looked up: programs start where no driver
 /// is, or an older one. Tests have others.
 struct GreenDriver {

@@ -28,11 +28,6 @@ void use_whole_gpu(int index) {
   used_sms = 0;
 }
 
-void* find_in_driver(const char* name) {
-  static void* const driver = dlopen("libcuda.so.1", RTLD_NOW | RTLD_LOCAL);
-  return driver != nullptr ? dlsym(driver, name) : nullptr;
-}
-
 /// Green contexts that nobody uses. They stay until the process ends: a thread may still have one
 /// as its current context, and the next render wants one of the same size.
 class IdleContexts {
@@ -67,6 +62,11 @@ IdleContexts& idle_contexts() {
 }
 
 }  // namespace
+
+void* find_in_driver(const char* name) {
+  static void* const driver = dlopen("libcuda.so.1", RTLD_NOW | RTLD_LOCAL);
+  return driver != nullptr ? dlsym(driver, name) : nullptr;
+}
 
 void reach_gpu(int index) {
   int current = -1;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/cuda/cuda_check.cuh"
+#include "common/cuda/used_gpu.cuh"
 
 // CUDA 12.6 brought the range profiler.
 #if __has_include(<cupti_range_profiler.h>)
@@ -229,12 +230,9 @@ class MetricHost {
   std::vector<const char*> pointers_;
 };
 
-/// CUDA's driver interface, which the process has loaded by now, for its one call.
 CUcontext current_context() {
-  void* driver = dlopen("libcuda.so.1", RTLD_NOW | RTLD_LOCAL);
   using GetCurrent = int (*)(CUcontext*);
-  const auto get =
-      driver != nullptr ? reinterpret_cast<GetCurrent>(dlsym(driver, "cuCtxGetCurrent")) : nullptr;
+  const auto get = reinterpret_cast<GetCurrent>(find_in_driver("cuCtxGetCurrent"));
   CUcontext context = nullptr;
   if (get == nullptr || get(&context) != 0 || context == nullptr) {
     throw CountersUnavailable("CUPTI: the driver (libcuda.so.1) tells no current context");
