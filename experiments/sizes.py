@@ -31,6 +31,8 @@ def add_arguments(parser):
                         help="built-in scenes [those of the rule]")
     add_scene_files(parser)
     parser.add_argument("--modes", nargs="+", choices=MODES, default=MODES, help="[all]")
+    parser.add_argument("--sms", metavar="N", type=int, default=0,
+                        help="multiprocessors of the GPU to render on, 0: all [%(default)s]")
     for name, values in (("sizes", SIZES), ("samples", SAMPLES), ("depths", DEPTHS)):
         parser.add_argument(f"--{name}", nargs="+", metavar="N", type=int, default=values,
                             help=f"{name} of the grid {values}")
@@ -47,10 +49,11 @@ def cells(arguments):
 
 
 def configurations(arguments, _device):
+    part = f" --sms {arguments.sms}" if arguments.sms else ""
     return [Configuration(
         f"{short_name(scene)}, {size}x{size}x{samples}, depth {depth}: {mode}",
         f"--scene {scene} --width {size} --height {size} --spp {samples} --max-depth {depth} "
-        f"--mode {mode}",
+        f"--mode {mode}{part}",
         {"panel": short_name(scene), "series": f"{samples} samples, depth {depth}",
          "x": size if mode == "wavefront" else "", "variant": mode, "loss": "", **ratio_labels()})
             for scene, size, samples, depth in cells(arguments) for mode in arguments.modes]
