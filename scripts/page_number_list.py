@@ -99,7 +99,7 @@ def of_one_run():
     first, last = (datetime.date.fromisoformat(days[end]) for end in (0, -1))
     day = f"{last.day} {last:%B}"
     if len(commits(tables)) == 1:
-        return f"one run of `scripts/reproduce`, commit {commits(tables)[0]}, {day}"
+        return f"all by `scripts/reproduce`, commit {commits(tables)[0]}, {day}"
     return f"{len(commits(tables))} commits, {first.day} {first:%B} to {day}"
 
 
