@@ -48,7 +48,7 @@ Calibration planted_calibration(const CalibrationKey& key) {
   Calibration calibration{.key = key, .constants = {}};
   set_measured(calibration.constants, &C::scan_primitives, 33);
   set_measured(calibration.constants, &C::ray_s_thread, 1.25e-7);
-  calibration.kept = {"few_paths: the times do not tell"};
+  calibration.kept = {"few_paths_multiprocessor: the times do not tell"};
   calibration.seconds = 12.5;
   return calibration;
 }
@@ -151,7 +151,7 @@ TEST(Calibration, OfACpuFindsPlantedConstants) {
   EXPECT_NEAR(c.ray_s_thread, 1e-3 * 10 * 2 / 1500, 1e-12);
   EXPECT_TRUE(is_measured(c, &C::sah_s));
   EXPECT_TRUE(found.kept.empty()) << found.kept.front();
-  EXPECT_FALSE(is_measured(c, &C::few_paths));
+  EXPECT_FALSE(is_measured(c, &C::few_paths_multiprocessor));
   EXPECT_EQ(found.key, calibration_key(cpu, with_threads(2)));
   // A plan by it follows paths alone.
   cpu.properties.constants = c;
@@ -184,7 +184,7 @@ TEST(Calibration, OfAGpuFindsPlantedConstants) {
   EXPECT_NEAR(c.megakernel_sorting, 1.2, 1e-9);
   EXPECT_NEAR(c.megakernel_mesh, 0.8, 1e-9);
   EXPECT_NEAR(c.short_depth, 10, 1);
-  EXPECT_NEAR(std::sqrt(c.few_paths), 250, 5);
+  EXPECT_NEAR(std::sqrt(c.few_paths_multiprocessor * gpu.multiprocessors), 250, 5);
   EXPECT_NEAR(c.scan_spheres_wavefront, 600, 5);
   EXPECT_NEAR(c.scan_spheres_megakernel, 400, 5);
   EXPECT_NEAR(c.constant_spheres, 100, 2);
@@ -199,7 +199,7 @@ TEST(Calibration, WhatTheTimesDoNotTellKeepsItsDefault) {
   const Calibration found = renders.calibrated(planted_gpu());
   EXPECT_FALSE(is_measured(found.constants, &C::megakernel_spheres));
   EXPECT_EQ(found.constants.megakernel_spheres, C().megakernel_spheres);
-  EXPECT_EQ(found.constants.few_paths, C().few_paths);
+  EXPECT_EQ(found.constants.few_paths_multiprocessor, C().few_paths_multiprocessor);
   EXPECT_NE(std::ranges::find(found.kept, "megakernel_spheres: the times do not tell"),
             found.kept.end());
   EXPECT_NE(calibration_text(found).find("kept: megakernel_spheres"), std::string::npos);

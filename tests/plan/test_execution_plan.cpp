@@ -401,7 +401,8 @@ TEST(ExecutionPlan, TakesTheModeThatWasFaster) {
   EXPECT_EQ(mode_of(spheres(51), {}, cpu()), "wavefront");
 }
 
-// Both sides of each limit between the modes: short paths have 6 rays, few paths are 2^19.
+// Both sides of each limit between the modes: short paths have 6 rays, few paths are 2^19 on an
+// H200 and as many on each multiprocessor of a smaller GPU.
 TEST(ExecutionPlan, ModesChangeAtTheirLimits) {
   const SceneProperties dial = mesh(five_kinds | bit(kind_of<Metal>));
   struct Case {
@@ -420,6 +421,17 @@ TEST(ExecutionPlan, ModesChangeAtTheirLimits) {
                            {"max-depth", c.depth}};
     EXPECT_EQ(to_string(plan_of(settings, c.scene, gpu()).mode), c.mode)
         << c.width << ' ' << c.depth;
+  }
+  DeviceProperties small = gpu();
+  small.multiprocessors = 33;  // a quarter of an H200's
+  const Choices settings{
+      {"mode", "auto"}, {"width", "1024"}, {"height", "128"}, {"max-depth", "50"}};
+  for (const char* spp : {"1", "2"}) {
+    Choices image = settings;
+    image["spp"] = spp;
+    EXPECT_EQ(to_string(plan_of(image, quads(17), gpu()).mode), "wavefront") << spp;
+    EXPECT_EQ(to_string(plan_of(image, quads(17), small).mode),
+              *spp == '1' ? "wavefront" : "megakernel");
   }
 }
 
@@ -489,7 +501,8 @@ std::vector<Turn> planted_turns() {
       {&C::order_kinds, 4, "order-surfaces", "off", "on", mesh(five_kinds), gpu(), {}},
       {&C::short_depth, 12, "mode", "megakernel", "wavefront", quads(17), gpu(), large("12")},
       {&C::short_depth_sorting, 12, "mode", "megakernel", "wavefront", dial, gpu(), large("12")},
-      {&C::few_paths, 1e9, "mode", "megakernel", "wavefront", quads(17), gpu(), large("50")},
+      {&C::few_paths_multiprocessor, 1e9, "mode", "megakernel", "wavefront", quads(17), gpu(),
+       large("50")},
       {&C::megakernel_spheres, 1.1, "mode", "megakernel", "wavefront", spheres(51), gpu(),
        automatic},
       {&C::megakernel_sorting, 1.1, "mode", "megakernel", "wavefront", dial, gpu(), automatic},
@@ -530,10 +543,11 @@ TEST(ExecutionPlan, PlantedConstantsTurnDecisions) {
 TEST(ExecutionPlan, SaysWhereItsConstantsAreFrom) {
   using C = PlanConstants;
   PlanConstants constants;
-  EXPECT_EQ(origin_of(constants, {&C::sah_s, &C::few_paths}), "from an H200");
+  EXPECT_EQ(origin_of(constants, {&C::sah_s, &C::few_paths_multiprocessor}), "from an H200");
   set_measured(constants, &C::sah_s, 2);
-  EXPECT_EQ(origin_of(constants, {&C::sah_s, &C::few_paths}), "partly measured here");
-  EXPECT_EQ(origin_of(constants, {&C::few_paths}), "from an H200");
+  EXPECT_EQ(origin_of(constants, {&C::sah_s, &C::few_paths_multiprocessor}),
+            "partly measured here");
+  EXPECT_EQ(origin_of(constants, {&C::few_paths_multiprocessor}), "from an H200");
   EXPECT_EQ(origin_of(constants, {&C::sah_s}), "measured here");
   DeviceProperties device = gpu();
   device.constants.calibration = "0123";

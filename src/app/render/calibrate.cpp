@@ -196,9 +196,11 @@ class Calibrator {
         &C::short_depth, "quads, length of paths", {2, 4, 6, 8, 12, 16, 32},
         [](int depth) { return image("cornell", 1024, 4, depth); }, wavefront, megakernel);
     probe_turn(
-        &C::few_paths, "quads, number of paths", {1 << 14, 1 << 16, 1 << 18, 1 << 20, 1 << 22},
-        [](int paths) { return image("cornell", int(std::sqrt(paths)), 1, 50); }, wavefront,
-        megakernel);
+        &C::few_paths_multiprocessor, "quads, number of paths", {128, 512, 2048, 8192, 32768},
+        [&](int paths) {
+          return image("cornell", int(std::sqrt(double(paths) * device_.multiprocessors)), 1, 50);
+        },
+        wavefront, megakernel);
     probe_modes(&C::megakernel_sorting, "many kinds of BSDFs",
                 {image("dial:16:0:closed", 1024, 4, 32), image("dial:16:1:closed", 1024, 4, 32)});
     probe_modes(&C::megakernel_mesh, "megakernel against wavefront: triangles",

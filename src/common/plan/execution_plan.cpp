@@ -125,9 +125,10 @@ class Planner {
       return {wavefront, by({&C::short_depth}, "quads and short paths")};
     const double paths = double(o_.width) * o_.height * o_.spp;
     const auto reason = [&](const char* text) {
-      return by({&C::short_depth, &C::few_paths}, text);
+      return by({&C::short_depth, &C::few_paths_multiprocessor}, text);
     };
-    if (paths <= c_.few_paths) return {wavefront, reason("quads and few paths")};
+    const double few = c_.few_paths_multiprocessor * device_.multiprocessors;
+    if (paths <= few) return {wavefront, reason("quads and few paths")};
     return {megakernel, reason("quads and many long paths")};
   }
 

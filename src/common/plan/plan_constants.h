@@ -24,7 +24,8 @@ struct PlanConstants {
   double order_kinds = 5;          ///< kinds of BSDFs whose surfaces are not ordered
   double short_depth = 6;          ///< rays of a path among quads: waves trace them in full warps
   double short_depth_sorting = 6;  ///< the same against blocks that sort
-  double few_paths = 1 << 19;      ///< long ones among quads: a megakernel waits for the longest
+  /// Long paths among quads, for each multiprocessor: a megakernel waits for the longest.
+  double few_paths_multiprocessor = (1 << 19) / 132.0;
 
   // Times of the megakernel by those of the wavefront: median over results/nvidia-h200/sizes.csv.
   double megakernel_spheres = 0.84;
@@ -92,7 +93,7 @@ inline constexpr PlanConstantInfo plan_constant_table[] = {
     {"order_kinds", &PlanConstants::order_kinds, "kinds", 0, 64},
     {"short_depth", &PlanConstants::short_depth, "rays", 0, 65535},
     {"short_depth_sorting", &PlanConstants::short_depth_sorting, "rays", 0, 65535},
-    {"few_paths", &PlanConstants::few_paths, "paths", 0, 1e12},
+    {"few_paths_multiprocessor", &PlanConstants::few_paths_multiprocessor, "paths", 0, 1e12},
     {"megakernel_spheres", &PlanConstants::megakernel_spheres, "times", 0.001, 1000},
     {"megakernel_sorting", &PlanConstants::megakernel_sorting, "times", 0.001, 1000},
     {"megakernel_mesh", &PlanConstants::megakernel_mesh, "times", 0.001, 1000},
