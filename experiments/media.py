@@ -2,11 +2,11 @@
 """Media: which mode is faster in a medium, and where should null collisions be sampled?
 
 The scene `cloud:N:T:A` is a grid of N^3 voxels with optical depth T and albedo A, `fog` a homogeneous
-medium in a room (docs/scenes.md). Each of density, albedo and grid size varies alone. The megakernel
-loops over a flight's null collisions in its lane; so does the wavefront, or it lets a path wait for
-the next wave after some of them (--wave-collisions). `ratio` is the megakernel's time divided by the
-variant's. All trace the same structure. First, images of all variants are compared: they must be equal
-bit for bit.
+medium in a room (docs/scenes.md). Each of density, albedo and grid size varies alone, and so does the
+size of `cloud:N:T:A:sparse`, sparse or copied to a dense grid. The megakernel loops over a flight's
+null collisions in its lane; so does the wavefront, or it lets a path wait for the next wave after some
+of them (--wave-collisions). `ratio` is the megakernel's time divided by the variant's. All trace the
+same structure. First, images of all variants are compared: they must be equal bit for bit.
 """
 import sys
 
@@ -17,6 +17,7 @@ from lib.ratios import ratio_labels, set_ratios
 DEPTHS = [0.1, 0.3, 1, 3, 10, 30, 100]
 ALBEDOS = [0, 0.5, 0.9, 0.99, 0.999]
 SIDES = [16, 64, 256, 512]
+SPARSE_SIDES, DENSE_SIDE_MOST = [256, 512, 1024, 2048], 1024
 SIDE, DEPTH, ALBEDO = 128, 10, 0.999
 BASE = "megakernel"
 VARIANTS = {
@@ -39,14 +40,20 @@ def add_arguments(parser):
                         help="rays of a path; roulette begins after 16 [%(default)s]")
 
 
+def sparse_scenes(sides):
+    scenes = [(side, f"cloud:{side}:{DEPTH}:{ALBEDO}:sparse --volume ") for side in sides]
+    return ([("voxels, sparse", n, scene + "sparse") for n, scene in scenes]
+            + [("voxels, dense copy", n, scene + "dense") for n, scene in scenes if n <= DENSE_SIDE_MOST])
+
+
 def scenes_of(quick):
     """(figure, x, scene): what varies, its value, and where."""
     if quick:
-        return [("optical depth", 3, f"cloud:16:3:{ALBEDO}"), ("homogeneous", 0, "fog")]
+        return [("optical depth", 3, f"cloud:16:3:{ALBEDO}"), ("homogeneous", 0, "fog"), *sparse_scenes([64])]
     return ([("optical depth", t, f"cloud:{SIDE}:{t}:{ALBEDO}") for t in DEPTHS]
             + [("albedo", a, f"cloud:{SIDE}:{DEPTH}:{a}") for a in ALBEDOS]
             + [("voxels along a side", n, f"cloud:{n}:{DEPTH}:{ALBEDO}") for n in SIDES]
-            + [("homogeneous", 0, "fog")])
+            + sparse_scenes(SPARSE_SIDES) + [("homogeneous", 0, "fog")])
 
 
 def configurations(arguments, _device):
@@ -63,7 +70,7 @@ def configurations(arguments, _device):
                 f"--max-depth {arguments.max_depth} --rr 16 --accel bvh2 {options}",
                 {"panel": figure, "series": variant, "x": x if drawn else "", "figure": figure,
                  "value": x, "variant": variant, **ratio_labels()},
-                same_image=f"{figure} {x:g}"))
+                same_image=scene.split()[0]))
     return rows
 
 

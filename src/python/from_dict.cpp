@@ -94,7 +94,7 @@ VolumeData grid_of(const nb::handle& array) {
 LoadOptions load_options_of(const Words& words, WarningLimit& limit) {
   const Options options = command_of(words).options;
   return {options.definitions,      options.strict, limit.function(), {},
-          options.default_lighting, options.camera};
+          options.default_lighting, options.camera, options.volume};
 }
 
 template <class Load>

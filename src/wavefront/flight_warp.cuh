@@ -53,7 +53,7 @@ struct FlightReserve {
 ///   start(index, flight)                 false: that flight was done at once
 ///   medium(flight)
 ///   finish(flight, event, t)
-template <class Flights>
+template <bool has_sparse, class Flights>
 __device__ void fly_by_warps(const VolumeGrids& grids, const Flights& flights) {
   using State = CellWalk::State;
   // By simulation of the flights of `cloud`, from thin to dense.
@@ -83,9 +83,10 @@ __device__ void fly_by_warps(const VolumeGrids& grids, const Flights& flights) {
       if (state == State::reaches_depth || state == State::arrives) {
         const MajorantWalk end = walk.result(state, flight.t_max);
         FreeFlight so_far{end.t, flight.collisions};
-        const FlightEvent event = end_walk(grids, flights.medium(flight), flight.ray, end,
-                                           CollisionDraw(flight.key, so_far, flight.densities),
-                                           so_far, flight.densities, flight.beta);
+        const FlightEvent event =
+            end_walk<has_sparse>(grids, flights.medium(flight), flight.ray, end,
+                                 CollisionDraw(flight.key, so_far, flight.densities), so_far,
+                                 flight.densities, flight.beta);
         flight.collisions = so_far.collisions;
         begins = event == FlightEvent::collides_with_nothing;
         if (!begins) flights.finish(flight, event, so_far.t), state = State::idle;

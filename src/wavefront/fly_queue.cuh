@@ -73,12 +73,12 @@ struct QueuedFlights {
 
 inline constexpr int flight_block = 128;
 
-template <class Flights>
+template <class Flights, bool has_sparse>
 __global__ void __launch_bounds__(flight_block, 6)
     fly_flights_of_queue(const __grid_constant__ Flights flights, StageClock* clock) {
   stamp_first_thread(clock, StageId::sample_medium);
   if (*flights.queues.count == 0) return;
-  fly_by_warps(flights.scene.grids, flights);
+  fly_by_warps<has_sparse>(flights.scene.grids, flights);
 }
 
 }  // namespace pt

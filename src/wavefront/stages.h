@@ -265,6 +265,8 @@ PT_HD Next after_flight(const Hit& hit) {
 
 /// The free flights of paths in media: to a collision, or to what their rays have hit. One that is
 /// not there after `collisions_max` null collisions goes on in the next wave.
+/// has_sparse: as sample_grid().
+template <bool has_sparse>
 struct SampleMedium {
   static constexpr StageId id = StageId::sample_medium;
   static constexpr SphereAccess spheres = SphereAccess::once;
@@ -283,8 +285,8 @@ struct SampleMedium {
     pool.load_medium(slot, path);
     Hit hit = pool.load_hit(slot);
     FreeFlight flight = pool.load_flight(slot);
-    const bool arrives = travel(scene, ray, media_key(scene, samples, path.index), collisions_max,
-                                path, flight, hit);
+    const bool arrives = travel<has_sparse>(scene, ray, media_key(scene, samples, path.index),
+                                            collisions_max, path, flight, hit);
     pool.store_path(slot, ray, path);
     pool.store_medium(slot, path);
     pool.store_flight(slot, arrives ? FreeFlight() : flight);
@@ -436,6 +438,7 @@ struct ShadowRays {
 
 /// Dims shadow rays by the media in which they begin, and end, since every boundary there has a
 /// BSDF and is opaque to them: for tracers that find occlusion only.
+template <bool has_sparse>
 struct AttenuateShadowRays {
   static constexpr StageId id = StageId::shadow;
   static constexpr StageOutcomes outcomes = {{free_slot}, false, false};
@@ -451,13 +454,13 @@ struct AttenuateShadowRays {
     set_lanes(shadow.ray, pool.shadow_lanes(lanes_of(scene), slot));
     const std::uint32_t key =
         shadow_ray_key(scene, media_key(scene, samples, path_index), pool.load_shadow_rays(slot));
-    pool.dim_shadow(slot,
-                    segment_transmittance(scene, medium_id, shadow.ray, shadow.distance, key, 0));
+    pool.dim_shadow(slot, segment_transmittance<has_sparse>(scene, medium_id, shadow.ray,
+                                                            shadow.distance, key, 0));
     return {free_slot};
   }
 };
 
-template <class Traits>
+template <class Traits, bool has_sparse>
 struct TraceShadowRays : ShadowRays {
   static constexpr SphereAccess spheres = SphereAccess::once;
 
@@ -471,7 +474,7 @@ struct TraceShadowRays : ShadowRays {
     }
     if constexpr (Traits::has_media) {
       shadow.medium_id = pool.load_shadow_medium_id(slot);
-      const Color passed = shadow_transmittance<Traits>(scene, shadow, key);
+      const Color passed = shadow_transmittance<Traits, has_sparse>(scene, shadow, key);
       shadow.radiance = multiply_rounded(shadow.radiance, passed);
       return finish(path_index, shadow, false);
     }

@@ -59,6 +59,15 @@ void trace_rays(Executor& execute, const WaveBuffers& b, const SampleBuffer& sam
   execute.run(IntersectRays<RayTraits<Traits>>{{b.pool, parts_misses}, samples}, rays);
 }
 
+/// Calls function(constant): whether stages look sparse grids up.
+template <bool has_media, class Function>
+void with_sparse(const WaveBuffers& b, Function&& function) {
+  if constexpr (has_media) {
+    if (b.policy.has_sparse) return function(std::true_type());
+  }
+  function(std::false_type());
+}
+
 /// The free flights of paths in media, by persistent warps or by a thread each, as with rays.
 template <class Executor>
 void fly(Executor& execute, const WaveBuffers& b, const SampleBuffer& samples) {
@@ -71,7 +80,9 @@ void fly(Executor& execute, const WaveBuffers& b, const SampleBuffer& samples) {
       return;
     }
   }
-  execute.run(SampleMedium{b.pool, samples, b.policy.wave_collisions}, flights);
+  with_sparse<true>(b, [&](auto has_sparse) {
+    execute.run(SampleMedium<has_sparse()>{b.pool, samples, b.policy.wave_collisions}, flights);
+  });
 }
 
 /// Paths in media take their free flights first. All paths then wait for their next event: a miss,
@@ -144,11 +155,17 @@ void trace_shadow_rays(Executor& execute, const WaveBuffers& b, const SampleBuff
         b.stage_queues(StageId::shadow, b.waiting(StageId::shadow), b.pool.shadow_tag);
     if constexpr (Executor::template traces_queues<Traits>) {
       if (rays.appends && execute.traces_queues_here()) {
-        if constexpr (Traits::has_media) execute.run(AttenuateShadowRays{b.pool, samples}, rays);
+        if constexpr (Traits::has_media) {
+          with_sparse<true>(b, [&](auto has_sparse) {
+            execute.run(AttenuateShadowRays<has_sparse()>{b.pool, samples}, rays);
+          });
+        }
         return execute.trace_shadow_queue(rays, samples);
       }
     }
-    execute.run(TraceShadowRays<RayTraits<Traits>>{{b.pool, samples}}, rays);
+    with_sparse<Traits::has_media>(b, [&](auto has_sparse) {
+      execute.run(TraceShadowRays<RayTraits<Traits>, has_sparse()>{{b.pool, samples}}, rays);
+    });
   }
 }
 

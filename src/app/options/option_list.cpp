@@ -234,6 +234,9 @@ void add_scene(std::vector<OptionEntry>& list) {
            "A soft light from behind and above the camera. auto: where a\n"
            "scene file has no light, or a .gltf, .glb or .obj has none\n"
            "that reaches what its camera sees")
+      .add(choice("volume", &Options::volume),
+           "How sparse grids lie in memory: the same image. auto: sparse\n"
+           "where that takes less than half of more than 64 MiB")
       .add(flag("scene-from-disk", &Options::scene_from_disk),
            "In an MPI job each rank reads the scene's files; by default the\n"
            "first one does, and sends them to the others")
@@ -517,7 +520,7 @@ bool determines_image(const OptionEntry& entry) {
   const auto is_one_of = [](const std::string& text, std::initializer_list<const char*> list) {
     return std::ranges::any_of(list, [&](const char* one) { return text == one; });
   };
-  if (is_one_of(entry.name, {"output", "exposure", "spp", "strict", "scene-from-disk"}))
+  if (is_one_of(entry.name, {"output", "exposure", "spp", "strict", "scene-from-disk", "volume"}))
     return false;
   if (is_one_of(entry.name, {"rng", "kernel-set"})) return true;
   return entry.group == OptionGroup::image || entry.group == OptionGroup::scene ||

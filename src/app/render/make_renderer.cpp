@@ -45,7 +45,8 @@ SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& 
                                                       limit.function(),
                                                       {},
                                                       options.default_lighting,
-                                                      options.camera});
+                                                      options.camera,
+                                                      options.volume});
     scene.source_hash = files.hash(std::filesystem::path(options.scene).parent_path());
     for (const auto& path : files.paths()) scene.source_files.push_back(path.string());
     return scene;
@@ -56,6 +57,9 @@ SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& 
   }
   if (options.default_lighting != DefaultLighting::automatic)
     throw Error(fmt::format("--default-lighting: is for scene files; '{}' is a built-in scene",
+                            options.scene));
+  if (options.volume != VolumeStorage::automatic && !options.scene.ends_with(":sparse"))
+    throw Error(fmt::format("--volume: is for scene files and cloud:N:T:A:sparse, not for '{}'",
                             options.scene));
   if (options.create_world == WorldBuilder::host) return build_scene(options);
 #ifdef PTEXP_CUDA

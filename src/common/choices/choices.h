@@ -18,6 +18,9 @@ enum class DirectionSampling : std::uint8_t { uniform, cosine, bsdf };
 /// How light sampling and direction sampling are combined.
 enum class MisHeuristic : std::uint8_t { none, balance, power };
 
+/// How grids that are sparse in their files lie in memory (--volume).
+enum class VolumeStorage : std::uint8_t { automatic, dense, sparse };
+
 /// What rays can hit. `mixed`: triangles, instances of triangles, spheres.
 enum class Geometry { spheres_and_quads, triangles, mixed };
 

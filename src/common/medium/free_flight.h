@@ -3,7 +3,7 @@
 
 #include "common/medium/distance_sampling.h"
 #include "common/medium/majorant_walk.h"
-#include "common/medium/medium.h"
+#include "common/medium/sample_grid.h"
 #include "common/sampling/random.h"
 
 namespace pt {
@@ -83,6 +83,7 @@ struct CollisionDraw {
 
 /// Decides between a real and a null collision at the end of a walk: delta tracking (Woodcock et
 /// al. 1965; Miller et al. 2019), with majorants that are constant in cells.
+template <bool has_sparse = true>
 PT_HD FlightEvent end_walk(const VolumeGrids& grids, const Medium& medium, const Ray& ray,
                            const MajorantWalk& walk, const CollisionDraw& draw, FreeFlight& flight,
                            ChannelDensities& densities, Color& beta) {
@@ -96,7 +97,8 @@ PT_HD FlightEvent end_walk(const VolumeGrids& grids, const Medium& medium, const
     }
     return FlightEvent::arrives;
   }
-  const Color density = sample_grid(grids, grid, add_scaled(ray.origin, walk.t, ray.direction));
+  const Color density =
+      sample_grid<has_sparse>(grids, grid, add_scaled(ray.origin, walk.t, ray.direction));
   const float inverse = divide(1.0f, walk.majorant);
   const Color there(fminf(multiply_rounded(density.x, inverse), 1.0f),
                     fminf(multiply_rounded(density.y, inverse), 1.0f),
@@ -114,18 +116,20 @@ PT_HD FlightEvent end_walk(const VolumeGrids& grids, const Medium& medium, const
 }
 
 /// Advances a flight in a medium with a grid to its next collision, null or real, or to `t_max`.
+template <bool has_sparse = true>
 PT_HD FlightEvent fly_to_collision(const VolumeGrids& grids, const Medium& medium, const Ray& ray,
                                    float t_max, std::uint32_t key, FreeFlight& flight,
                                    ChannelDensities& densities, Color& beta) {
   const CollisionDraw draw(key, flight, densities);
   const MajorantWalk walk = walk_majorants(grids, grids.grids[medium.density_grid], ray, flight.t,
                                            t_max, draw.depth(medium));
-  return end_walk(grids, medium, ray, walk, draw, flight, densities, beta);
+  return end_walk<has_sparse>(grids, medium, ray, walk, draw, flight, densities, beta);
 }
 
 /// An unbiased estimate of the transmittance of `t_max` of a ray: ratio tracking (Novak et al.
 /// 2014, 'Residual ratio tracking for estimating attenuation in participating media') by the
 /// channel of the largest extinction, with roulette where little is left.
+template <bool has_sparse = true>
 PT_HD Color estimate_transmittance(const VolumeGrids& grids, const Medium& medium, const Ray& ray,
                                    float t_max, std::uint32_t key) {
   if (medium.is_homogeneous()) return transmittance(medium.extinction, t_max);
@@ -144,7 +148,8 @@ PT_HD Color estimate_transmittance(const VolumeGrids& grids, const Medium& mediu
     if (walk.arrives) return estimate;
     lanes_of(ray).count(LanePoint::flight);
     t = walk.t;
-    const Color density = sample_grid(grids, grid, add_scaled(ray.origin, t, ray.direction));
+    const Color density =
+        sample_grid<has_sparse>(grids, grid, add_scaled(ray.origin, t, ray.direction));
     const float inverse = divide(1.0f, walk.majorant);
     const auto missed = [&](float of_density, float of_channel) {
       return fmaxf(1.0f - multiply_rounded(multiply_rounded(of_density, inverse), of_channel),

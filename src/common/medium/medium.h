@@ -84,20 +84,6 @@ struct Media {
   }
 };
 
-/// The medium's albedo at a point.
-PT_HD Color albedo_at(const VolumeGrids& grids, const Medium& medium, const Vec3& point) {
-  if (medium.albedo_grid == no_grid) return medium.albedo;
-  return multiply_rounded(medium.albedo,
-                          sample_grid(grids, grids.grids[medium.albedo_grid], point));
-}
-
-/// The radiance of the absorbing matter at a point.
-PT_HD Color emission_at(const VolumeGrids& grids, const Medium& medium, const Vec3& point) {
-  if (medium.emission_grid == no_grid) return medium.emission;
-  return multiply_rounded(medium.emission,
-                          sample_grid(grids, grids.grids[medium.emission_grid], point));
-}
-
 /// exp(-extinction * length); `length` may be infinite_distance.
 PT_HD Color transmittance(const Color& extinction, float length) {
   return {expf(-multiply_rounded(extinction.x, length)),

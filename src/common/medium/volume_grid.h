@@ -1,6 +1,8 @@
 // Regular grids of values that vary in a medium, and their bounds, which make empty space cheap.
 #pragma once
 
+#include <cstddef>
+
 #include "common/geometry/ray.h"
 #include "common/math/transform.h"
 
@@ -20,14 +22,24 @@ struct alignas(16) VolumeGrid {
   std::uint32_t interpolates =
       1;                   ///< trilinear between the middles of voxels; else constant in each
   std::uint32_t ends = 0;  ///< its outermost voxels are 0: it is empty beyond its cube
-  std::uint32_t unused = 0;
+  // A sparse grid is a tree of NanoVDB. With 3 channels its voxels have the bits of an index, from
+  // `first` on, into colours, of which the first is that of empty space.
+  std::uint32_t root = 0;         ///< index of the block where the tree's root begins; 0: dense
+  std::int32_t low[3] = {};       ///< the tree's coordinates of voxel (0, 0, 0)
+  std::uint32_t value_count = 0;  ///< of the values from `first` on
+};
+
+/// What a tree consists of: nodes begin at such addresses.
+struct alignas(32) SparseBlock {
+  std::byte bytes[32];
 };
 
 /// The grids of a scene.
 struct VolumeGrids {
   const VolumeGrid* grids = nullptr;
   const float* values = nullptr;
-  const float* majorants = nullptr;  ///< per cell, an upper bound of the grid's values in it
+  const float* majorants = nullptr;    ///< per cell, an upper bound of the grid's values in it
+  const SparseBlock* nodes = nullptr;  ///< of the sparse grids
 };
 
 namespace detail {
@@ -36,53 +48,6 @@ PT_HD std::uint32_t clamp_voxel(float index, std::uint32_t size) {
   return static_cast<std::uint32_t>(fminf(fmaxf(index, 0.0f), static_cast<float>(size - 1)));
 }
 
-/// The voxels on both sides of a coordinate in [0, 1], and how far it is from the first to the
-/// second.
-struct VoxelPair {
-  std::uint32_t low, high;
-  float between;
-
-  PT_HD VoxelPair(float unit, std::uint32_t size) {
-    const float x = fused_multiply_add(unit, static_cast<float>(size), -0.5f);
-    const float below = floorf(x);
-    low = clamp_voxel(below, size), high = clamp_voxel(below + 1.0f, size);
-    between = x - below;
-  }
-};
-
-template <class Value>
-PT_HD auto interpolate_voxels(const VolumeGrid& grid, const Vec3& p, Value&& value) {
-  const VoxelPair x(p.x, grid.size[0]), y(p.y, grid.size[1]), z(p.z, grid.size[2]);
-  const auto row = [&](std::uint32_t j, std::uint32_t k) {
-    const std::uint32_t first = grid.size[0] * (j + grid.size[1] * k);
-    return interpolate(value(first + x.low), value(first + x.high), x.between);
-  };
-  return interpolate(interpolate(row(y.low, z.low), row(y.high, z.low), y.between),
-                     interpolate(row(y.low, z.high), row(y.high, z.high), y.between), z.between);
-}
-
-template <class Value>
-PT_HD auto value_at(const VolumeGrid& grid, const Vec3& p, Value&& value) {
-  if (grid.interpolates != 0) return interpolate_voxels(grid, p, value);
-  const auto voxel = [](float unit, std::uint32_t size) {
-    return clamp_voxel(floorf(unit * static_cast<float>(size)), size);
-  };
-  const std::uint32_t j = voxel(p.y, grid.size[1]), k = voxel(p.z, grid.size[2]);
-  return value(voxel(p.x, grid.size[0]) + grid.size[0] * (j + grid.size[1] * k));
-}
-
 }  // namespace detail
-
-/// The grid's value at a point of the world; a single channel is grey.
-PT_HD Color sample_grid(const VolumeGrids& grids, const VolumeGrid& grid, const Vec3& point) {
-  const Vec3 p = grid.to_unit.point(point);
-  const float* const values = grids.values + grid.first;
-  if (grid.channels == 1) {
-    return Color(detail::value_at(grid, p, [&](std::uint32_t i) { return values[i]; }));
-  }
-  return detail::value_at(grid, p, [&](std::uint32_t i) {
-    return Color(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
-  });
-}
 
 }  // namespace pt

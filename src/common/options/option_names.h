@@ -132,6 +132,11 @@ template <>
 inline constexpr auto enum_names<WorldBuilder> = std::to_array<EnumName<WorldBuilder>>(
     {{WorldBuilder::host, "host"}, {WorldBuilder::device, "device"}});
 template <>
+inline constexpr auto enum_names<VolumeStorage> =
+    std::to_array<EnumName<VolumeStorage>>({{VolumeStorage::automatic, "auto"},
+                                            {VolumeStorage::dense, "dense"},
+                                            {VolumeStorage::sparse, "sparse"}});
+template <>
 inline constexpr auto enum_names<DefaultLighting> =
     std::to_array<EnumName<DefaultLighting>>({{DefaultLighting::automatic, "auto"},
                                               {DefaultLighting::on, "on"},

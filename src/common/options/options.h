@@ -191,6 +191,7 @@ struct Options : ImageSettings, ExecutionSettings {
   std::map<std::string, std::string> definitions;  ///< of a scene file's parameters
   bool strict = false;  ///< what a scene file has and ptexp lacks is an error
   DefaultLighting default_lighting = DefaultLighting::automatic;  ///< of scene files
+  VolumeStorage volume = VolumeStorage::automatic;                ///< of sparse grids
   bool scene_from_disk = false;  ///< of a job's ranks: each reads the scene's files by itself
   CameraOverrides camera;
   std::optional<FilterChoice> filter;  ///< none: the scene file's, or a box of one pixel

@@ -49,6 +49,7 @@ PT_HD void begin_flight(const Scene& scene, PathState& path) {
 /// Multiplies its throughput by what the flight weighs. Returns whether it is there: after
 /// `collisions_max` null collisions it is not, and `flight` says where to go on. `path.rays` does
 /// not yet count the ray.
+template <bool has_sparse = true>
 PT_HD bool travel(const Scene& scene, const Ray& ray, std::uint32_t path_key,
                   std::uint32_t collisions_max, PathState& path, FreeFlight& flight, Hit& hit) {
   if (!flight.has_begun()) begin_flight(scene, path);
@@ -61,8 +62,8 @@ PT_HD bool travel(const Scene& scene, const Ray& ray, std::uint32_t path_key,
   } else {
     do {
       lanes_of(ray).count(LanePoint::flight);
-      event = fly_to_collision(scene.grids, medium, ray, hit.t, key, flight, path.medium.densities,
-                               path.beta);
+      event = fly_to_collision<has_sparse>(scene.grids, medium, ray, hit.t, key, flight,
+                                           path.medium.densities, path.beta);
     } while (event == FlightEvent::collides_with_nothing && --collisions_max > 0);
     if (event == FlightEvent::collides_with_nothing) return false;
   }
@@ -132,15 +133,16 @@ PT_HD_IN_KERNEL Scattering medium_scattering(const Scene& scene, const Ray& ray,
 
 /// The transmittance of one segment of a shadow ray, of this length in one medium; `segment` is its
 /// number.
+template <bool has_sparse = true>
 PT_HD Color segment_transmittance(const Scene& scene, std::uint16_t medium_id, const Ray& ray,
                                   float length, std::uint32_t ray_key, std::uint32_t segment) {
-  return estimate_transmittance(scene.grids, load_wide(scene.media.at(medium_id)), ray, length,
-                                flight_key(ray_key, segment));
+  return estimate_transmittance<has_sparse>(scene.grids, load_wide(scene.media.at(medium_id)), ray,
+                                            length, flight_key(ray_key, segment));
 }
 
 /// The transmittance along a shadow ray: black if a surface with a BSDF lies between its ends, else
 /// that of the media and panes through which it goes.
-template <class Traits>
+template <class Traits, bool has_sparse = true>
 PT_HD Color shadow_transmittance(const Scene& scene, const ShadowRay& shadow,
                                  std::uint32_t ray_key) {
   Color result(1.0f);
@@ -156,8 +158,8 @@ PT_HD Color shadow_transmittance(const Scene& scene, const ShadowRay& shadow,
     }
     if (medium_id != no_medium) {
       const float length = arrives ? left : hit.t;
-      result = multiply_rounded(
-          result, segment_transmittance(scene, medium_id, ray, length, ray_key, segment));
+      result = multiply_rounded(result, segment_transmittance<has_sparse>(
+                                            scene, medium_id, ray, length, ray_key, segment));
     }
     if (arrives || is_black(result)) return result;
     const Surface surface = surface_at<ShadingTraits<Traits>>(scene, ray, hit);

@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 
+#include "common/medium/sample_grid.h"
 #include "common/scene/data/volume_data.h"
 #include "common/scene/prepare/prepare_steps.h"
 #include "statistics.h"
@@ -129,7 +130,8 @@ class ReferenceVolume {
 
 /// What kernels have of a scene's grids.
 inline VolumeGrids grids_of(const SceneData& scene) {
-  return {scene.grids.data(), scene.grid_values.data(), scene.majorants.data()};
+  return {scene.grids.data(), scene.grid_values.data(), scene.majorants.data(),
+          scene.grid_nodes.data()};
 }
 
 /// A scene of one medium, medium 0, whose extinction is multiplied by the volume.

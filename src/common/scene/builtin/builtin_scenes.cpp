@@ -118,12 +118,13 @@ const std::vector<SceneInfo>& scene_list() {
        [](const SceneRequest&) { return make_caustic_scene(); }},
       {"fog", "", "the Cornell Box filled with a homogeneous medium",
        [](const SceneRequest&) { return make_fog_scene(); }},
-      {"cloud", "N:T:A",
-       "a cumulus on a grid of N^3 voxels (128), of optical depth T (10) and albedo A (0.999)",
+      {"cloud", "N:T:A[:sparse]",
+       "a cumulus on a grid of N^3 voxels (128), of optical depth T (10) and albedo A (0.999); "
+       "sparse: several, which fill 2 % of it",
        [](const SceneRequest& request) {
          const CloudSettings settings = parse_cloud(request.name);
-         check_cloud_memory(request, settings.side);
-         return make_cloud_scene(settings);
+         if (!settings.is_sparse) check_cloud_memory(request, settings.side);
+         return make_cloud_scene(settings, request.options.volume);
        }},
       {"terrain", "N", "mountains of N triangles under a sky, 1M unless N is given", make_terrain},
       {"statue", "N", "a carved knot of N triangles under a sky and a lamp, 1M unless N is given",

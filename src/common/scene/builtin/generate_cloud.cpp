@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include <atomic>
+
 #include "common/error/error.h"
+#include "common/sampling/random.h"
 #include "common/scene/builtin/generated_scenes.h"
 #include "common/scene/builtin/noise.h"
 #include "common/scene/builtin/scene_name.h"
@@ -13,9 +16,12 @@ namespace {
 constexpr std::uint32_t cloud_seed = 7;
 constexpr double billow_size = 0.6;  ///< of the first octave's lattice
 constexpr double mean_cosine = 0.8;
+constexpr double cloud_reach = 1.0;  ///< farther from a cloud's middle there is hardly any of it
+constexpr double cloudlet_radii[] = {0.44, 0.26, 0.26, 0.22, 0.22, 0.18, 0.18, 0.18,
+                                     0.13, 0.13, 0.13, 0.13, 0.09, 0.09, 0.09, 0.09};
 
-/// In [0, 1]: a ball with a flat foot, billowed by noise.
-double density_at(const glm::dvec3& p, int octaves) {
+/// A third of the density where that is in [0, 1]: a ball with a flat foot, billowed by noise.
+double thickness_at(const glm::dvec3& p, int octaves) {
   const double flattened = p.y < -0.25 ? 2.2 * (p.y + 0.25) - 0.25 : p.y;
   const double from_middle = std::sqrt(p.x * p.x + 1.4 * flattened * flattened + p.z * p.z) / 0.78;
   double billows = 0, amplitude = 1;
@@ -26,11 +32,31 @@ double density_at(const glm::dvec3& p, int octaves) {
     amplitude *= 0.55;
     q *= lacunarity;
   }
-  return std::clamp(3 * (0.55 + 0.85 * billows - from_middle), 0.0, 1.0);
+  return 0.55 + 0.85 * billows - from_middle;
+}
+
+double density_of(double thickness) { return std::clamp(3 * thickness, 0.0, 1.0); }
+
+/// The same of a sparse grid: of integers, whose sums do not depend on their order.
+double densest_column_of_tree(const VolumeData& volume) {
+  constexpr double unit = 65536;
+  std::vector<std::atomic<std::uint32_t>> sums(std::size_t{volume.size[0]} * volume.size[1]);
+  for_each_brick(&volume.nodes[volume.root], [&](const SparseBrick& brick) {
+    for (int column = 0; column < 64; ++column) {
+      double sum = 0;
+      for (int k = 0; k < 8; ++k) sum += static_cast<double>(brick.values[8 * column + k]);
+      if (sum == 0) continue;
+      const auto x = static_cast<std::size_t>(brick.low.x + column / 8),
+                 y = static_cast<std::size_t>(brick.low.y + column % 8);
+      sums[x + y * volume.size[0]] += static_cast<std::uint32_t>(sum * unit);
+    }
+  });
+  return *std::ranges::max_element(sums) / unit;
 }
 
 /// The largest sum of a column of voxels along z.
 double densest_column(const VolumeData& volume) {
+  if (volume.is_sparse()) return densest_column_of_tree(volume);
   const std::size_t side = volume.size[0];
   double most = 0;
   for (std::size_t column = 0; column < side * side; ++column) {
@@ -43,7 +69,102 @@ double densest_column(const VolumeData& volume) {
   return most;
 }
 
+/// One of several clouds: in the cube [-1, 1]^3.
+struct Cloudlet {
+  glm::dvec3 middle;
+  double radius;  ///< it has no part farther away
+};
+
+/// At random places, where they fade out within the cube.
+std::vector<Cloudlet> cloudlets_of(std::uint32_t side) {
+  std::vector<Cloudlet> all;
+  std::uint32_t draw = 0;
+  const auto uniform = [&] {
+    return 2 * static_cast<double>(to_unit_float(combine_hash(cloud_seed, draw++))) - 1;
+  };
+  for (const double radius : cloudlet_radii) {
+    const double x = uniform(), y = uniform(), z = uniform();
+    all.push_back({(1 - 12.0 / side - radius) * glm::dvec3(x, y, z), radius});
+  }
+  return all;
+}
+
+/// Thicknesses at the corners of the eight blocks of 4^3 voxels of a brick.
+struct BrickLattice {
+  static constexpr int spacing = 4, points = 3;
+  float values[points][points][points];
+  bool is_empty = true;
+
+  BrickLattice() { std::fill_n(&values[0][0][0], points * points * points, -1.0f); }
+
+  /// Adds a cloud's part. `p` is in the first voxel's middle.
+  void add(const Cloudlet& cloudlet, const glm::dvec3& p, double voxel) {
+    const double scale = cloud_reach / cloudlet.radius, step = spacing * voxel * scale;
+    const int octaves = std::min(resolved_octaves(step / billow_size), 6);
+    for (int n = 0; n < points * points * points; ++n) {
+      const glm::dvec3 q =
+          scale * (p - cloudlet.middle) + step * glm::dvec3(n / 9, n / 3 % 3, n % 3);
+      // It fades towards the radius, whatever the noise.
+      const double fade = 4 * (1 - glm::length(q) / cloud_reach);
+      if (!(fade > 0)) continue;
+      const double thickness = std::min(thickness_at(q, octaves), fade);
+      float& value = values[n / 9][n / 3 % 3][n % 3];
+      value = std::max(value, static_cast<float>(thickness));
+      is_empty = is_empty && !(thickness > 0);
+    }
+  }
+
+  float at(int i, int j, int k) const {
+    const auto part = [](int n) { return 0.25f * static_cast<float>(n % spacing); };
+    const auto along_z = [&](int x, int y) {
+      const float* const row = values[x][y] + k / spacing;
+      return interpolate(row[0], row[1], part(k));
+    };
+    const auto along_y = [&](int x) {
+      return interpolate(along_z(x, j / spacing), along_z(x, j / spacing + 1), part(j));
+    };
+    return interpolate(along_y(i / spacing), along_y(i / spacing + 1), part(i));
+  }
+};
+
+struct CloudBrick {
+  glm::ivec3 place;
+  BrickLattice lattice;
+};
+
 }  // namespace
+
+VolumeData generate_sparse_cloud(std::uint32_t side) {
+  const double voxel = 2.0 / side;
+  const auto cloudlets = cloudlets_of(side);
+  const std::uint32_t bricks = (side + 7) / 8;
+  std::vector<std::vector<CloudBrick>> slabs(bricks);
+  tbb::parallel_for(std::uint32_t{0}, bricks, [&](std::uint32_t i) {
+    for (std::uint32_t n = 0; n < bricks * bricks; ++n) {
+      CloudBrick brick{8 * glm::ivec3(i, n / bricks, n % bricks), {}};
+      const glm::dvec3 p = voxel * (glm::dvec3(brick.place) + 0.5) - 1.0;
+      for (const Cloudlet& cloudlet : cloudlets) {
+        const double away = glm::length(p + 3.5 * voxel - cloudlet.middle);
+        if (away < cloudlet.radius + 8 * voxel) brick.lattice.add(cloudlet, p, voxel);
+      }
+      if (!brick.lattice.is_empty) slabs[i].push_back(brick);
+    }
+  });
+  std::vector<glm::ivec3> places;
+  std::vector<const BrickLattice*> lattices;
+  for (const auto& slab : slabs) {
+    for (const auto& brick : slab)
+      places.push_back(brick.place), lattices.push_back(&brick.lattice);
+  }
+  VolumeData volume = make_sparse(side, places, [&](std::size_t brick, float* values) {
+    for (int n = 0; n < 512; ++n) {
+      const float thickness = lattices[brick]->at(n / 64, n / 8 % 8, n % 8);
+      values[n] = static_cast<float>(density_of(static_cast<double>(thickness)));
+    }
+  });
+  volume.to_world = translate(Vec3(-1.0f)) * scale(Vec3(2.0f));
+  return volume;
+}
 
 CloudSettings parse_cloud(const SceneName& scene) {
   CloudSettings settings;
@@ -51,8 +172,11 @@ CloudSettings parse_cloud(const SceneName& scene) {
   std::string_view rest = scene.parameter;
   const bool has_depth = rest.find(':') != std::string_view::npos;
   const std::string_view side = next_part(rest);
-  if (!read_part(side, 2u, cloud_side_most, settings.side)) {
-    refuse_part(scene, 'N', side, fmt::format("a side from 2 to {} voxels", cloud_side_most),
+  settings.is_sparse = scene.parameter.ends_with(":sparse");
+  const std::uint32_t least = settings.is_sparse ? sparse_side_least : 2,
+                      most = settings.is_sparse ? sparse_side_most : cloud_side_most;
+  if (!read_part(side, least, most, settings.side)) {
+    refuse_part(scene, 'N', side, fmt::format("a side from {} to {} voxels", least, most),
                 "cloud:N:T:A");
   }
   if (!has_depth) return settings;
@@ -62,8 +186,9 @@ CloudSettings parse_cloud(const SceneName& scene) {
     refuse_part(scene, 'T', depth, "an optical depth from 0.001 to 10000", "cloud:N:T:A");
   }
   if (!has_albedo) return settings;
-  if (!read_part(rest, 0.0f, 1.0f, settings.albedo)) {
-    refuse_part(scene, 'A', rest, "an albedo from 0 to 1", "cloud:N:T:A");
+  const std::string_view albedo = settings.is_sparse ? next_part(rest) : rest;
+  if (!read_part(albedo, 0.0f, 1.0f, settings.albedo)) {
+    refuse_part(scene, 'A', albedo, "an albedo from 0 to 1", "cloud:N:T:A");
   }
   return settings;
 }
@@ -80,23 +205,25 @@ VolumeData generate_cloud(std::uint32_t side) {
     for (std::uint32_t j = 0; j < side; ++j) {
       for (std::uint32_t i = 0; i < side; ++i) {
         const glm::dvec3 p((i + 0.5) * voxel - 1, (j + 0.5) * voxel - 1, (k + 0.5) * voxel - 1);
-        *value++ = static_cast<float>(density_at(p, octaves));
+        *value++ = static_cast<float>(density_of(thickness_at(p, octaves)));
       }
     }
   });
   return volume;
 }
 
-SceneData make_cloud_scene(const CloudSettings& settings) {
+SceneData make_cloud_scene(const CloudSettings& settings, VolumeStorage storage) {
   SceneData scene;
-  const VolumeData volume = generate_cloud(settings.side);
+  VolumeData volume =
+      settings.is_sparse ? generate_sparse_cloud(settings.side) : generate_cloud(settings.side);
   const double densest = densest_column(volume) * 2.0 / settings.side;
   Medium cloud;
   cloud.extinction = Color(static_cast<float>(settings.optical_depth / densest));
   cloud.albedo = Color(settings.albedo);
   cloud.phase = phase_kind_of<HenyeyGreenstein>;
   cloud.phase_parameter = static_cast<float>(mean_cosine);
-  cloud.density_grid = add_grid(scene, volume);
+  if (settings.is_sparse && storage == VolumeStorage::dense) volume = dense_copy(volume);
+  cloud.density_grid = add_grid(scene, std::move(volume));
   scene.media.push_back(cloud);
   MaterialDescription boundary;
   boundary.is_boundary = boundary.passes = true;

@@ -56,8 +56,10 @@ struct CloudSettings {
   std::uint32_t side = 128;  ///< N: voxels along each axis, from 2 to cloud_side_most
   float optical_depth = 10;  ///< T > 0: of the densest column of voxels along z
   float albedo = 0.999f;     ///< A in [0, 1]
+  bool is_sparse = false;    ///< several clouds with much space between them
 };
 inline constexpr std::uint32_t cloud_side_most = 1024;
+inline constexpr std::uint32_t sparse_side_least = 64, sparse_side_most = 4096;
 
 /// Reads cloud:N:T:A, of which the last parts may be left out. Throws Error that names the part.
 CloudSettings parse_cloud(const SceneName& scene);
@@ -66,8 +68,13 @@ CloudSettings parse_cloud(const SceneName& scene);
 /// does not depend on the side, but for the finest octaves, which a coarse grid cannot show.
 VolumeData generate_cloud(std::uint32_t side);
 
+/// Clouds of several sizes in the same cube, of which they fill 2 %, as a sparse grid. The same
+/// bits for any number of threads. Throws Error in a program without NanoVDB.
+VolumeData generate_sparse_cloud(std::uint32_t side);
+
 /// The cloud above a ground, under a blue sky and a sun. Its phase function is Henyey and
 /// Greenstein's with a mean cosine of 0.8.
-SceneData make_cloud_scene(const CloudSettings& settings);
+SceneData make_cloud_scene(const CloudSettings& settings,
+                           VolumeStorage storage = VolumeStorage::automatic);
 
 }  // namespace pt

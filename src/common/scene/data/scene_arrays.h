@@ -41,6 +41,7 @@ void for_each_array(const SceneData& scene, Scene& view, Function&& function) {
   function(view.light_points, scene.light_points, "lights");
   function(view.grids.grids, scene.grids, "grids");
   function(view.grids.values, scene.grid_values, "grids");
+  function(view.grids.nodes, scene.grid_nodes, "grids");
   function(view.grids.majorants, scene.majorants, "grids");
   function(view.textures, scene.textures, "textures");
   function(view.texels, scene.texels, "textures");

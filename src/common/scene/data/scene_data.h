@@ -99,6 +99,7 @@ struct SceneData {
   std::vector<Medium> media;
   std::vector<VolumeGrid> grids;            ///< of media; add_grid() makes them
   std::vector<float> grid_values;           ///< of all grids
+  std::vector<SparseBlock> grid_nodes;      ///< of the sparse ones
   std::uint32_t camera_medium = no_medium;  ///< in which the camera stands
   std::vector<Texture> textures;
   std::vector<std::byte> texels;                              ///< of all textures

@@ -1,11 +1,15 @@
 #include "common/scene/data/volume_data.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "common/error/error.h"
+#include "common/error/host_memory.h"
 
 namespace pt {
 namespace {
@@ -20,13 +24,16 @@ void check(const SceneData& scene, const VolumeData& v) {
   if (v.channels != 1 && v.channels != 3) {
     fail(fmt::format("{} channels; expected 1 or 3", v.channels));
   }
-  if (v.values.size() != voxels * v.channels) {
+  if (!v.is_sparse() && v.values.size() != voxels * v.channels) {
     fail(fmt::format("{} values; expected {}", v.values.size(), voxels * v.channels));
   }
-  if (scene.grid_values.size() + v.values.size() > 0xffffffffu) {
+  if (scene.grid_nodes.size() + v.nodes.size() > 0xffffffffu) {
+    fail("expected at most 128 GiB of all sparse grids");
+  }
+  if (scene.grid_values.size() + v.values.size() + v.colors.size() > 0xffffffffu) {
     fail("expected at most 4,294,967,295 values in all grids");
   }
-  for (const float value : v.values) {
+  for (const float value : v.is_sparse() ? v.colors : v.values) {
     if (!(value >= 0) || !std::isfinite(value)) {
       fail(fmt::format("a value of {}; expected finite ones, at least 0", value));
     }
@@ -37,16 +44,22 @@ void check(const SceneData& scene, const VolumeData& v) {
 
 }  // namespace
 
+void widen_by_rim(VolumeData& volume) {
+  Vec3 voxel, size;
+  for (int axis = 0; axis < 3; ++axis) {
+    voxel[axis] = 1.0f / static_cast<float>(volume.size[axis]);
+    volume.size[axis] += 2, volume.low[axis] -= 1;
+    size[axis] = static_cast<float>(volume.size[axis]) * voxel[axis];
+  }
+  volume.to_world = volume.to_world * translate(-voxel) * scale(size);
+}
+
 VolumeData with_rim_of_zeros(const VolumeData& volume) {
   VolumeData result;
   result.channels = volume.channels, result.interpolates = volume.interpolates;
-  Vec3 voxel, size;
-  for (int axis = 0; axis < 3; ++axis) {
-    result.size[axis] = volume.size[axis] + 2;
-    voxel[axis] = 1.0f / static_cast<float>(volume.size[axis]);
-    size[axis] = static_cast<float>(result.size[axis]) * voxel[axis];
-  }
-  result.to_world = volume.to_world * translate(-voxel) * scale(size);
+  std::copy(std::begin(volume.size), std::end(volume.size), std::begin(result.size));
+  result.to_world = volume.to_world;
+  widen_by_rim(result);
   result.values.assign(
       std::size_t{result.size[0]} * result.size[1] * result.size[2] * volume.channels, 0.0f);
   const std::size_t length = std::size_t{volume.size[0]} * volume.channels;
@@ -78,7 +91,7 @@ bool has_empty_rim(const std::uint32_t (&size)[3], std::uint32_t channels, const
   return true;
 }
 
-std::uint32_t add_grid(SceneData& scene, const VolumeData& volume) {
+std::uint32_t add_grid(SceneData& scene, VolumeData volume) {
   check(scene, volume);
   VolumeGrid grid;
   grid.to_unit = inverse(volume.to_world);
@@ -86,9 +99,86 @@ std::uint32_t add_grid(SceneData& scene, const VolumeData& volume) {
   grid.first = static_cast<std::uint32_t>(scene.grid_values.size());
   grid.channels = volume.channels;
   grid.interpolates = volume.interpolates ? 1 : 0;
-  scene.grid_values.insert(scene.grid_values.end(), volume.values.begin(), volume.values.end());
+  const auto append = [](auto& to, auto&& from) {
+    if (to.empty()) {
+      to = std::move(from);
+    } else {
+      to.insert(to.end(), from.begin(), from.end());
+    }
+  };
+  if (volume.is_sparse()) {
+    grid.root = static_cast<std::uint32_t>(scene.grid_nodes.size()) + volume.root;
+    std::copy(std::begin(volume.low), std::end(volume.low), std::begin(grid.low));
+    grid.value_count = static_cast<std::uint32_t>(volume.colors.size());
+    append(scene.grid_nodes, std::move(volume.nodes));
+    append(scene.grid_values, std::move(volume.colors));
+  } else {
+    grid.value_count = static_cast<std::uint32_t>(volume.values.size());
+    append(scene.grid_values, std::move(volume.values));
+  }
   scene.grids.push_back(grid);
   return static_cast<std::uint32_t>(scene.grids.size() - 1);
+}
+
+float largest_value(const VolumeData& volume) {
+  if (!volume.is_sparse()) return *std::max_element(volume.values.begin(), volume.values.end());
+  std::atomic<float> largest = 0.0f;
+  for_each_brick(&volume.nodes[volume.root], [&](const SparseBrick& brick) {
+    const float value =
+        brick.values ? *std::max_element(brick.values, brick.values + 512) : brick.value;
+    for (float known = largest; known < value && !largest.compare_exchange_weak(known, value);) {
+    }
+  });
+  return largest;
+}
+
+VolumeData dense_copy(const VolumeData& volume) {
+  constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+  std::uint64_t voxels = 1;
+  for (const std::uint32_t side : volume.size) {
+    if (side > most / voxels) {
+      throw Error(
+          fmt::format("{} x {} x {} voxels around its active ones, expected at most {} in "
+                      "a dense grid; --volume sparse keeps it as it is",
+                      volume.size[0], volume.size[1], volume.size[2], most));
+    }
+    voxels *= side;
+  }
+  check_host_memory(voxels * sizeof(float), "the dense grid");
+  VolumeData dense;
+  std::copy(std::begin(volume.size), std::end(volume.size), std::begin(dense.size));
+  dense.interpolates = volume.interpolates, dense.to_world = volume.to_world;
+  dense.values.assign(voxels, 0.0f);
+  for_each_brick(&volume.nodes[volume.root], [&](const SparseBrick& brick) {
+    const glm::ivec3 low = brick.low - glm::ivec3(volume.low[0], volume.low[1], volume.low[2]);
+    const auto clamped = [&](int axis, int end) {
+      const int side = static_cast<int>(volume.size[axis]);
+      return std::clamp(low[axis] + (end == 0 ? 0 : brick.side), 0, side);
+    };
+    for (int z = clamped(2, 0); z < clamped(2, 1); ++z) {
+      for (int y = clamped(1, 0); y < clamped(1, 1); ++y) {
+        float* const row = &dense.values[(std::size_t{volume.size[1]} * static_cast<unsigned>(z) +
+                                          static_cast<unsigned>(y)) *
+                                         volume.size[0]];
+        for (int x = clamped(0, 0); x < clamped(0, 1); ++x) {
+          row[x] = brick.values ? brick.values[((x - low.x) * 8 + (y - low.y)) * 8 + (z - low.z)]
+                                : brick.value;
+        }
+      }
+    }
+  });
+  return dense;
+}
+
+VolumeData stored_as(VolumeStorage storage, VolumeData volume) {
+  // A dense grid costs fewer loads. What fits into a GPU's cache, or is hardly larger, is dense.
+  constexpr double small_bytes = 64 << 20, tree_share = 0.5;
+  const double bytes = 4.0 * volume.size[0] * volume.size[1] * volume.size[2];
+  const double tree_bytes = static_cast<double>(volume.nodes.size() * sizeof(SparseBlock));
+  const bool is_sparse = storage == VolumeStorage::automatic
+                             ? bytes > small_bytes && tree_bytes < tree_share * bytes
+                             : storage == VolumeStorage::sparse;
+  return is_sparse ? std::move(volume) : dense_copy(volume);
 }
 
 }  // namespace pt

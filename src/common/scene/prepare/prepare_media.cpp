@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 
 #include "common/error/error.h"
@@ -28,13 +29,99 @@ struct VoxelRange {
   }
 };
 
+/// The cells in whose values a voxel along an axis has a part: [first, last].
+struct CellRange {
+  std::uint32_t first, last;
+
+  bool operator==(const CellRange&) const = default;
+};
+
+/// The majorants of a sparse grid: those that it would have if it were dense.
+class SparseMajorants {
+ public:
+  SparseMajorants(const VolumeGrid& grid, float* majorants) : grid_(grid), majorants_(majorants) {
+    for (int axis = 0; axis < 3; ++axis) {
+      cells_of_[axis].assign(grid.size[axis], {grid.cells[axis], 0});
+      for (std::uint32_t cell = 0; cell < grid.cells[axis]; ++cell) {
+        const VoxelRange voxels(cell, grid.cells[axis], grid.size[axis], grid.interpolates != 0);
+        for (std::uint32_t v = voxels.begin; v < voxels.end; ++v) {
+          CellRange& cells = cells_of_[axis][v];
+          cells = {std::min(cells.first, cell), cell};
+        }
+      }
+    }
+  }
+
+  /// Thread-safe.
+  void add(const SparseBrick& brick) const {
+    for_runs(brick, 0, [&](int x0, int x1, const CellRange& x) {
+      for_runs(brick, 1, [&](int y0, int y1, const CellRange& y) {
+        for_runs(brick, 2, [&](int z0, int z1, const CellRange& z) {
+          float largest = brick.value;
+          for (int i = x0; brick.values != nullptr && i < x1; ++i) {
+            for (int j = y0; j < y1; ++j) {
+              const float* const row = brick.values + (i * 8 + j) * 8;
+              largest = std::max(largest, *std::max_element(row + z0, row + z1));
+            }
+          }
+          raise(x, y, z, largest);
+        });
+      });
+    });
+  }
+
+ private:
+  /// Calls function(begin, end, cells) for the brick's voxels along an axis that have a part in the
+  /// same cells.
+  template <class Function>
+  void for_runs(const SparseBrick& brick, int axis, Function&& function) const {
+    const int low = brick.low[axis] - grid_.low[axis];
+    const int last = std::min(brick.side, static_cast<int>(grid_.size[axis]) - low);
+    const auto cells = [&](int i) { return cells_of_[axis][static_cast<std::size_t>(low + i)]; };
+    for (int begin = std::max(0, -low); begin < last;) {
+      int end = begin + 1;
+      while (end < last && cells(end) == cells(begin)) ++end;
+      function(begin, end, cells(begin));
+      begin = end;
+    }
+  }
+
+  void raise(const CellRange& x, const CellRange& y, const CellRange& z, float value) const {
+    for (std::uint32_t k = z.first; k <= z.last; ++k) {
+      for (std::uint32_t j = y.first; j <= y.last; ++j) {
+        for (std::uint32_t i = x.first; i <= x.last; ++i) {
+          const std::atomic_ref<float> majorant(
+              majorants_[i + grid_.cells[0] * (j + std::size_t{grid_.cells[1]} * k)]);
+          float known = majorant;
+          while (known < value && !majorant.compare_exchange_weak(known, value)) {
+          }
+        }
+      }
+    }
+  }
+
+  const VolumeGrid& grid_;
+  float* majorants_;
+  std::vector<CellRange> cells_of_[3];  ///< by voxel
+};
+
+void bound_sparse(SceneData& scene, VolumeGrid& grid) {
+  grid.ends = 1;
+  scene.majorants.resize(scene.majorants.size() +
+                         std::size_t{grid.cells[0]} * grid.cells[1] * grid.cells[2]);
+  const SparseMajorants majorants(grid, &scene.majorants[grid.first_cell]);
+  for_each_brick(&scene.grid_nodes[grid.root],
+                 [&](const SparseBrick& brick) { majorants.add(brick); });
+}
+
 void bound(SceneData& scene, VolumeGrid& grid) {
-  grid.ends = has_empty_rim(grid.size, grid.channels, &scene.grid_values[grid.first]) ? 1 : 0;
   for (int axis = 0; axis < 3; ++axis) {
     const std::uint32_t wanted = (grid.size[axis] + cell_voxels - 1) / cell_voxels;
     grid.cells[axis] = std::min(wanted, cells_max);
   }
   grid.first_cell = static_cast<std::uint32_t>(scene.majorants.size());
+  if (grid.root != 0) return bound_sparse(scene, grid);
+  grid.ends = has_empty_rim(grid.size, grid.channels, &scene.grid_values[grid.first]) ? 1 : 0;
   const auto range = [&](int axis, std::uint32_t cell) {
     return VoxelRange(cell, grid.cells[axis], grid.size[axis], grid.interpolates != 0);
   };

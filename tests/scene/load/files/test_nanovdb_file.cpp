@@ -183,7 +183,9 @@ TEST_F(NanovdbFile, OtherGridsAreRefused) {
   // The root's only entry becomes a tile: its child's offset, its state and its value.
   UnpackedNanovdb huge = file;
   huge.put<std::int64_t>(file.root + 72, 0).put(file.root + 80, 1u).put(file.root + 84, 1.0f);
-  expect_refused(huge.bytes, "4096 x 4096 x 4096 voxels around its active ones, expected at most");
+  expect_error([&] { decode_nanovdb(huge.bytes, "", "a.nvdb", VolumeStorage::dense); },
+               "4098 x 4098 x 4098 voxels around its active ones, expected at most");
+  EXPECT_TRUE(decode(huge).is_sparse());
 }
 
 TEST_F(NanovdbFile, OtherValuesAreRefused) {
@@ -222,6 +224,17 @@ TEST_F(NanovdbFile, DamagedOnesAreRefused) {
   expect_refused(UnpackedNanovdb(full).put(full.leaf + 300, 1).bytes, "its checksum is another");
   expect_refused(UnpackedNanovdb(file).put(file.grid, 1).bytes,
                  "expected 'NanoVDB' where it begins");
+}
+
+// What is written into one would change another, which has been checked.
+TEST_F(NanovdbFile, NodesThatOverlapAreRefused) {
+  UnpackedNanovdb file("balls.nvdb");
+  file.without_checksum();
+  const std::size_t at = file.first_child(file.lower, 4096);
+  const auto offset = file.at<std::int64_t>(at);
+  for (const std::int64_t other : {offset + 32, offset - 32, std::int64_t{0}}) {
+    expect_refused(UnpackedNanovdb(file).put(at, other).bytes, "damaged: nodes used twice");
+  }
 }
 
 TEST_F(NanovdbFile, NodesElsewhereAreRefused) {

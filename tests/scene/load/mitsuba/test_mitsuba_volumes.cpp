@@ -1,6 +1,7 @@
 // <volume>s of heterogeneous media: what is read from files, where it lies, and where it ends.
 #include <gtest/gtest.h>
 
+#include "common/medium/sample_grid.h"
 #include "common/scene/load/files/volumes/volume_files.h"
 #include "load/expect_near.h"
 #include "load/mitsuba_scene.h"
@@ -82,7 +83,7 @@ class MitsubaVolumes : public testing::Test {
 };
 
 VolumeGrids grids_of(const SceneData& scene) {
-  return {scene.grids.data(), scene.grid_values.data(), nullptr};
+  return {scene.grids.data(), scene.grid_values.data(), nullptr, scene.grid_nodes.data()};
 }
 
 Color extinction_at(const SceneData& scene, const Vec3& point, std::size_t medium = 0) {

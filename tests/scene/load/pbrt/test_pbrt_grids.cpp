@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "common/medium/sample_grid.h"
 #include "common/scene/load/pbrt/scene_parts.h"
 #include "load/expect_near.h"
 #include "load/pbrt_scene.h"

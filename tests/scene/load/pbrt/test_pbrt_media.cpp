@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "common/medium/sample_grid.h"
 #include "load/expect_near.h"
 #include "load/pbrt_scene.h"
 #include "load/render_loaded.h"

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "common/medium/sample_grid.h"
 #include "common/scene/load/files/volumes/volume_files.h"
 #include "common/scene/load/pbrt/scene_parts.h"
 #include "load/expect_near.h"
@@ -27,8 +28,9 @@ std::string world_of_gas(const std::string& medium) {
 }
 
 Color grid_value(const SceneData& scene, std::uint32_t grid, const Vec3& point) {
-  return sample_grid({scene.grids.data(), scene.grid_values.data(), nullptr}, scene.grids.at(grid),
-                     point);
+  return sample_grid(
+      {scene.grids.data(), scene.grid_values.data(), nullptr, scene.grid_nodes.data()},
+      scene.grids.at(grid), point);
 }
 
 // 0.75 from the middle of a ball of radius 1, whose fog grows over 0.375.

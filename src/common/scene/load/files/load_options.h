@@ -23,6 +23,7 @@ struct LoadOptions {
   std::map<std::string, Mesh> meshes{};
   DefaultLighting default_lighting = DefaultLighting::automatic;
   CameraOverrides camera{};  ///< through which default lighting is decided, besides the file's
+  VolumeStorage volume = VolumeStorage::automatic;  ///< of sparse grids
   /// Pictures of "bitmap" and "envmap" and grids of "gridvolume" in memory, named likewise.
   std::map<std::string, std::shared_ptr<const TextureImage>> images{};
   std::map<std::string, VolumeData> volumes{};

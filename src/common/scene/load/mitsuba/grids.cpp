@@ -78,7 +78,7 @@ class GridsOfScene {
     const VolumeData& grid = context_.volumes.at(grids.density);
     Medium& medium = context_.scene.media[number];
     expect_finite(*grids.medium, medium, grid);
-    if (!has_empty_rim(grid.size, grid.channels, grid.values.data()) &&
+    if (!grid.is_sparse() && !has_empty_rim(grid.size, grid.channels, grid.values.data()) &&
         reaches_beyond(context_.scene, number, grid)) {
       if (grid.interpolates || !is_aligned(grid.to_world)) {
         context_.warn_once("beyond grid", grids.medium->element(),
@@ -95,7 +95,8 @@ class GridsOfScene {
   }
 
   void add_albedo(std::uint16_t number, const Context::MediumGrids& grids) {
-    const VolumeData& grid = context_.volumes.at(grids.albedo);
+    const VolumeData& of_file = context_.volumes.at(grids.albedo);
+    const VolumeData grid = of_file.is_sparse() ? dense_copy(of_file) : of_file;
     Medium& medium = context_.scene.media[number];
     const auto bounded = [&] { return at_most_one(*grids.albedo, grid); };
     if (is_constant(grid)) {
@@ -118,8 +119,7 @@ class GridsOfScene {
   }
 
   static void expect_finite(const Object& object, const Medium& medium, const VolumeData& grid) {
-    const float largest = *std::max_element(grid.values.begin(), grid.values.end());
-    const float extinction = largest * max_abs(medium.extinction);
+    const float extinction = largest_value(grid) * max_abs(medium.extinction);
     if (!std::isfinite(extinction)) {
       fail(object.element(), "an extinction of {} somewhere; expected a finite one", extinction);
     }

@@ -57,9 +57,10 @@ VolumeData read_vol_grid(const Object& volume, const std::filesystem::path& path
 }
 
 /// An extension of ours. Its place is the file's, with or without use_grid_bbox.
-VolumeData read_nanovdb_grid(const Object& volume, const std::filesystem::path& path) {
+VolumeData read_nanovdb_grid(Context& context, const Object& volume,
+                             const std::filesystem::path& path) {
   volume.ignore({"use_grid_bbox"});
-  return read_nanovdb(path, volume.text("grid", ""));
+  return read_nanovdb(path, volume.text("grid", ""), context.volume_storage());
 }
 
 VolumeData read_grid_file(Context& context, const Object& volume) {
@@ -68,7 +69,7 @@ VolumeData read_grid_file(Context& context, const Object& volume) {
   const auto path = context.resolve(*filename, filename->required("value"));
   try {
     const bool is_nanovdb = path.extension() == ".nvdb";
-    return is_nanovdb ? read_nanovdb_grid(volume, path) : read_vol_grid(volume, path);
+    return is_nanovdb ? read_nanovdb_grid(context, volume, path) : read_vol_grid(volume, path);
   } catch (const Error& error) {
     fail(*filename, error.what());
   }

@@ -132,15 +132,17 @@ namespace {
 void read_emission_of_gas(Context& context, const Entity& entity, const Parameter& filename,
                           VolumeData temperature, Medium& medium) {
   const float light_scale = read_factor(entity.parameters, "Lescale", 1.0f);
-  const std::vector<Color> light =
-      read_gas_light(entity.parameters, filename.place, temperature.values);
-  if (light_scale == 0.0f) return;
   VolumeData volume = std::move(temperature);
+  std::vector<float> numbered;
+  if (volume.is_sparse() && !number_voxels(volume, numbered)) volume = dense_copy(volume);
+  const std::vector<Color> light = read_gas_light(entity.parameters, filename.place,
+                                                  volume.is_sparse() ? numbered : volume.values);
+  if (light_scale == 0.0f) return;
   volume.channels = 3;
-  volume.values = channels_of(light, 3);
+  (volume.is_sparse() ? volume.colors : volume.values) = channels_of(light, 3);
   volume.to_world = entity.to_world * volume.to_world;
   medium.emission = Color(context.imaging_ratio * light_scale);
-  medium.emission_grid = add_grid(context.scene, volume);
+  medium.emission_grid = add_grid(context.scene, std::move(volume));
   context.lit = true;
 }
 
@@ -153,9 +155,9 @@ struct GasGrids {
 GasGrids read_gas_grids(Context& context, const Parameter& filename) {
   const auto path = context.resolve(filename.place, filename.strings.at(0));
   try {
-    GasGrids grids{read_nanovdb(path), {}};
+    GasGrids grids{read_nanovdb(path, {}, context.volume_storage), {}};
     if (has_nanovdb_grid(path, "temperature")) {
-      grids.temperature = read_nanovdb(path, "temperature");
+      grids.temperature = read_nanovdb(path, "temperature", context.volume_storage);
     }
     return grids;
   } catch (const Error& error) {
@@ -174,7 +176,7 @@ Medium read_nanovdb_grids(Context& context, const Entity& entity) {
   Medium medium = read_coefficients(context, parameters, read_factor(parameters, "scale", 1.0f));
   GasGrids grids = read_gas_grids(context, *filename);
   grids.density.to_world = entity.to_world * grids.density.to_world;
-  medium.density_grid = add_grid(context.scene, grids.density);
+  medium.density_grid = add_grid(context.scene, std::move(grids.density));
   if (grids.temperature) {
     read_emission_of_gas(context, entity, *filename, std::move(*grids.temperature), medium);
   } else {

@@ -44,8 +44,7 @@ void balance_medium(SceneData& scene, const Balance& balance, Medium& medium) {
     return balance(medium.emission);
   }
   const VolumeGrid& grid = scene.grids[medium.emission_grid];
-  const std::size_t voxels = std::size_t{grid.size[0]} * grid.size[1] * grid.size[2];
-  for (std::size_t i = 0; i < voxels; ++i) {
+  for (std::size_t i = 0; i < grid.value_count / 3; ++i) {
     float* const values = &scene.grid_values[grid.first + 3 * i];
     Color color(values[0], values[1], values[2]);
     balance(color);
@@ -134,6 +133,7 @@ SceneData load_pbrt(const std::filesystem::path& path, const LoadOptions& option
   SceneData scene;
   scene.name = path.stem().string();
   Context context(scene, description, reporter);
+  context.volume_storage = options.volume;
   const ReadAhead ahead;
   read_files_ahead(context);
   pbrt::read_view(context);

@@ -15,10 +15,11 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/error/error.h"
-#include "common/math/vec.h"
+#include "common/medium/volume_grid.h"
 
 namespace pt::nanovdb_files {
 
@@ -34,10 +35,7 @@ struct GridEntry {
 };
 
 inline constexpr std::size_t alignment = NANOVDB_DATA_ALIGNMENT;
-
-struct alignas(alignment) Block {
-  std::byte bytes[alignment];
-};
+static_assert(sizeof(SparseBlock) == alignment);
 
 /// As NanoVDB's structures must lie.
 class GridBytes {
@@ -48,6 +46,7 @@ class GridBytes {
   std::byte* data() { return reinterpret_cast<std::byte*>(blocks_.data()); }
   const std::byte* data() const { return reinterpret_cast<const std::byte*>(blocks_.data()); }
   std::uint64_t size() const { return size_; }
+  std::vector<SparseBlock> take() { return std::move(blocks_); }
 
   /// What begins at `position`, of `size` bytes at least. Throws Error where there is none.
   template <class T>
@@ -60,7 +59,7 @@ class GridBytes {
 
  private:
   std::uint64_t size_;
-  std::vector<Block> blocks_;
+  std::vector<SparseBlock> blocks_;
 };
 
 /// The grids of a file, in its order; they refer to `bytes`. Throws Error where it is none.
@@ -149,8 +148,10 @@ class TreeWalk {
     std::set<std::uint64_t> keys;
     for (std::uint32_t i = 0; i < root.mTableSize; ++i) {
       const RootTile& tile = *root.tile(i);
-      if (!keys.insert(tile.key).second) throw Error("damaged: two nodes in the same place");
       const nanovdb::Coord origin = tile.origin();
+      if (!keys.insert(tile.key).second || tile.key != Root::CoordToKey(origin)) {
+        throw Error("damaged: two nodes in the same place");
+      }
       const Int3 low(origin[0], origin[1], origin[2]);
       if (tile.isChild()) {
         add(tree_.uppers, &root, tile.child, low);
@@ -160,6 +161,7 @@ class TreeWalk {
     }
     for (const auto& upper : tree_.uppers) add_entries(upper, tree_.lowers, 5, lower_side);
     for (const auto& lower : tree_.lowers) add_entries(lower, tree_.leaves, 4, leaf_side);
+    expect_disjoint();
     return std::move(tree_);
   }
 
@@ -198,6 +200,25 @@ class TreeWalk {
     for (auto entry = node.mValueMask.beginOn(); entry; ++entry) {
       if (node.mChildMask.isOn(*entry)) continue;
       tree_.tiles.push_back({node.mTable[*entry].value, low_of(*entry), entry_side});
+    }
+  }
+
+  /// What is written into a node changes no other.
+  void expect_disjoint() const {
+    std::vector<std::pair<const std::byte*, std::uint64_t>> nodes;
+    const auto add_all = [&](const auto& level) {
+      for (const auto& placed : level) {
+        nodes.emplace_back(reinterpret_cast<const std::byte*>(placed.node),
+                           placed.node->memUsage());
+      }
+    };
+    nodes.emplace_back(bytes_.data(), tree_.root_end);
+    add_all(tree_.uppers), add_all(tree_.lowers), add_all(tree_.leaves);
+    std::ranges::sort(nodes);
+    for (std::size_t i = 1; i < nodes.size(); ++i) {
+      if (nodes[i - 1].first + nodes[i - 1].second > nodes[i].first) {
+        throw Error("damaged: nodes used twice");
+      }
     }
   }
 

@@ -14,7 +14,7 @@ namespace {
 
 bool reads_nanovdb() { return false; }
 
-VolumeData read_nanovdb(const std::filesystem::path& path, const std::string&) {
+VolumeData read_nanovdb(const std::filesystem::path& path, const std::string&, VolumeStorage) {
   refuse(path.string());
 }
 
@@ -22,7 +22,8 @@ bool has_nanovdb_grid(const std::filesystem::path& path, const std::string&) {
   refuse(path.string());
 }
 
-VolumeData decode_nanovdb(std::string_view, const std::string&, const std::string& name) {
+VolumeData decode_nanovdb(std::string_view, const std::string&, const std::string& name,
+                          VolumeStorage) {
   refuse(name);
 }
 

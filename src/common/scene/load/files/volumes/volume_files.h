@@ -12,17 +12,20 @@ namespace pt {
 /// Whether this program can read them.
 bool reads_nanovdb();
 
-/// Reads a grid of floats, quantized or not, into a dense one around its active voxels, which is
-/// zero wherever it ends: in the file's world, trilinear. An empty name is "density" or else the
-/// only grid there is. Throws Error with the file's name where it is of another kind, is damaged or
-/// ends too early, has no such grid, or one of other values than a grid may have (VolumeData).
-VolumeData read_nanovdb(const std::filesystem::path& path, const std::string& grid = {});
+/// Reads a grid of floats, quantized or not, with the voxels around its active ones, which is zero
+/// wherever it ends: in the file's world, trilinear; dense or sparse. An empty name is "density" or
+/// else the only grid there is. Throws Error with the file's name where it is of another kind, is
+/// damaged or ends too early, has no such grid, or one of other values than a grid may have
+/// (VolumeData).
+VolumeData read_nanovdb(const std::filesystem::path& path, const std::string& grid = {},
+                        VolumeStorage storage = VolumeStorage::automatic);
 
 /// Whether the file has a grid of this name.
 bool has_nanovdb_grid(const std::filesystem::path& path, const std::string& grid);
 
 /// As read_nanovdb, from memory; `name` is for errors.
-VolumeData decode_nanovdb(std::string_view bytes, const std::string& grid, const std::string& name);
+VolumeData decode_nanovdb(std::string_view bytes, const std::string& grid, const std::string& name,
+                          VolumeStorage storage = VolumeStorage::automatic);
 
 // Mitsuba's .vol: a grid of voxels.
 

@@ -67,6 +67,8 @@ class Context {
   const TextureImage* memory_image(const Object& object) const;
   const VolumeData* memory_volume(const Object& object) const;
 
+  VolumeStorage volume_storage() const { return options_.volume; }
+
   /// An emitter becomes a light, or it is left out; add_default_lighting_if_dark() needs to know.
   void add_lit() { lit_ = true; }
   void add_left_out(const Object& emitter) { left_out_.push_back(&emitter); }

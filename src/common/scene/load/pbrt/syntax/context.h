@@ -65,6 +65,7 @@ class Context {
   float imaging_ratio = 1.0f;  ///< of the film: multiplies all light
   float white_kelvins = 0.0f;  ///< what the film takes for white; 0: takes all as it is
 
+  VolumeStorage volume_storage = VolumeStorage::automatic;
   std::map<std::string, std::uint16_t> media;  ///< numbers of those that were made, by name
 
   /// The number of a material; one that is there already is not added.

@@ -1,0 +1,51 @@
+// Sparse grids on a GPU: the bits of dense ones.
+#include <gtest/gtest.h>
+
+#include "common/scene/builtin/generated_scenes.h"
+#include "cuda_test.h"
+#include "sparse_fogs.h"
+
+namespace pt {
+namespace {
+
+class CudaSparseGrids : public CudaTest {
+ protected:
+  void SetUp() override {
+    CudaTest::SetUp();
+    if (!reads_nanovdb()) GTEST_SKIP() << "built without NanoVDB";
+  }
+};
+
+Options gpu_options(const std::string& mode, const Settings& more = {}) {
+  return with(with(cloud_options(mode), {{"device", "cuda:0"}, {"width", "61"}}), more);
+}
+
+TEST_F(CudaSparseGrids, GiveTheImagesOfDenseOnesInAllModes) {
+  const SceneData dense = sparse_fogs(VolumeStorage::dense),
+                  sparse = sparse_fogs(VolumeStorage::sparse);
+  const Rendered expected = render_clouds(dense, gpu_options("megakernel"));
+  expect_plausible(expected, gpu_options("megakernel"));
+  for (const Options& options :
+       {gpu_options("megakernel"), gpu_options("wavefront"),
+        gpu_options("wavefront", {{"wave-collisions", "2"}}),
+        gpu_options("wavefront", {{"finish-paths", "0"}}),
+        gpu_options("wavefront", {{"stages", "fused"}}),
+        gpu_options("wavefront", {{"schedule", "host"}, {"persistent", "off"}})}) {
+    SCOPED_TRACE(command_of(options));
+    expect_same(render_clouds(sparse, options), expected);
+  }
+}
+
+TEST_F(CudaSparseGrids, CloudsAreTheSameAsDenseOnes) {
+  const auto image = [](VolumeStorage storage, const std::string& mode) {
+    const CloudSettings settings{192, 20, 0.9f, true};
+    return render_clouds(make_cloud_scene(settings, storage),
+                         gpu_options(mode, {{"width", "120"}, {"height", "80"}}));
+  };
+  const Rendered expected = image(VolumeStorage::dense, "megakernel");
+  expect_same(image(VolumeStorage::sparse, "megakernel"), expected);
+  expect_same(image(VolumeStorage::sparse, "wavefront"), expected);
+}
+
+}  // namespace
+}  // namespace pt
