@@ -2,11 +2,16 @@
 """Media: which mode is faster in a medium, and where should null collisions be sampled?
 
 The scene `cloud:N:T:A` is a grid of N^3 voxels with optical depth T and albedo A, `fog` a homogeneous
-medium in a room (docs/scenes.md). Each of density, albedo and grid size varies alone, and so does the
-size of `cloud:N:T:A:sparse`, sparse or copied to a dense grid. The megakernel loops over a flight's
-null collisions in its lane; so does the wavefront, or it lets a path wait for the next wave after some
-of them (--wave-collisions). `ratio` is the megakernel's time divided by the variant's. All trace the
-same structure. First, images of all variants are compared: they must be equal bit for bit.
+medium in a room (docs/scenes.md). Each of density, albedo and grid size varies alone. The megakernel
+loops over a flight's null collisions in its lane; so does the wavefront, or it lets a path wait for
+the next wave after some of them (--wave-collisions). `ratio` is the megakernel's time divided by the
+variant's. All trace the same structure. First, images of all variants are compared: they must be equal
+bit for bit.
+
+`cloud:N:T:A:sparse:P` fills P percent of N^3 voxels. Its side and its share vary, each time as a sparse
+grid and as a dense copy (--volume); `sparse_gain` is the copy's time divided by the sparse grid's, and
+`ns_per_ray` a row's time divided by its rays and shadow rays, each of which has at most one flight in
+the grid. `ptexp --counters` tells the lanes and bytes of a row's kernels.
 """
 import sys
 
@@ -18,6 +23,8 @@ DEPTHS = [0.1, 0.3, 1, 3, 10, 30, 100]
 ALBEDOS = [0, 0.5, 0.9, 0.99, 0.999]
 SIDES = [16, 64, 256, 512]
 SPARSE_SIDES, DENSE_SIDE_MOST = [256, 512, 1024, 2048], 1024
+SHARES, SHARES_SIDE = [0.5, 1, 2, 5, 10, 20, 40], 512
+STORAGES = ["sparse", "dense"]
 SIDE, DEPTH, ALBEDO = 128, 10, 0.999
 BASE = "megakernel"
 VARIANTS = {
@@ -40,20 +47,24 @@ def add_arguments(parser):
                         help="rays of a path; roulette begins after 16 [%(default)s]")
 
 
-def sparse_scenes(sides):
-    scenes = [(side, f"cloud:{side}:{DEPTH}:{ALBEDO}:sparse --volume ") for side in sides]
-    return ([("voxels, sparse", n, scene + "sparse") for n, scene in scenes]
-            + [("voxels, dense copy", n, scene + "dense") for n, scene in scenes if n <= DENSE_SIDE_MOST])
+def sparse_scenes(sides, shares, shares_side):
+    def scene(side, share, storage):
+        return f"cloud:{side}:{DEPTH}:{ALBEDO}:sparse:{share:g} --volume {storage}"
+    return ([(f"side, {storage}", n, scene(n, 2, storage)) for storage in STORAGES for n in sides
+             if storage == "sparse" or n <= DENSE_SIDE_MOST]
+            + [(f"percent, {storage}", p, scene(shares_side, p, storage)) for storage in STORAGES
+               for p in shares])
 
 
 def scenes_of(quick):
     """(figure, x, scene): what varies, its value, and where."""
     if quick:
-        return [("optical depth", 3, f"cloud:16:3:{ALBEDO}"), ("homogeneous", 0, "fog"), *sparse_scenes([64])]
+        return [("optical depth", 3, f"cloud:16:3:{ALBEDO}"), ("homogeneous", 0, "fog"),
+                *sparse_scenes([64], [10], 64)]
     return ([("optical depth", t, f"cloud:{SIDE}:{t}:{ALBEDO}") for t in DEPTHS]
             + [("albedo", a, f"cloud:{SIDE}:{DEPTH}:{a}") for a in ALBEDOS]
             + [("voxels along a side", n, f"cloud:{n}:{DEPTH}:{ALBEDO}") for n in SIDES]
-            + sparse_scenes(SPARSE_SIDES) + [("homogeneous", 0, "fog")])
+            + sparse_scenes(SPARSE_SIDES, SHARES, SHARES_SIDE) + [("homogeneous", 0, "fog")])
 
 
 def configurations(arguments, _device):
@@ -69,8 +80,9 @@ def configurations(arguments, _device):
                 f"--scene {scene} --width {size} --height {size} --spp {spp} "
                 f"--max-depth {arguments.max_depth} --rr 16 --accel bvh2 {options}",
                 {"panel": figure, "series": variant, "x": x if drawn else "", "figure": figure,
-                 "value": x, "variant": variant, **ratio_labels()},
-                same_image=scene.split()[0]))
+                 "value": x, "variant": variant, "sparse_gain": "", "ns_per_ray": "",
+                 **ratio_labels()},
+                same_image=scene.split(" --volume")[0]))
     return rows
 
 
@@ -80,6 +92,17 @@ def scene_of(row):
 
 def finish(rows, _arguments):
     set_ratios(rows, BASE, scene_of)
+    copies = {(row["figure"], row["value"], row["variant"]): row for row in rows}
+    for row in rows:
+        if not row["kernel_ms_median"]:
+            continue
+        rays = int(row["rays"]) + int(row["shadow_rays"])
+        row["ns_per_ray"] = f"{1e6 * float(row['kernel_ms_median']) / rays:.4g}"
+        quantity, _, storage = row["figure"].partition(", ")
+        copy = copies.get((f"{quantity}, dense", row["value"], row["variant"]))
+        if storage == "sparse" and copy and copy["kernel_ms_median"]:
+            gain = float(copy["kernel_ms_median"]) / float(row["kernel_ms_median"])
+            row["sparse_gain"] = f"{gain:.4f}"
 
 
 def conclude(rows, _arguments):
@@ -95,6 +118,12 @@ def conclude(rows, _arguments):
         best = max(measured, key=lambda row: float(row["ratio_median"]))
         sentences.append(f"{figure} {value}: {best['variant']} is fastest, "
                          f"{float(best['ratio_median']):.2f} times the megakernel's speed")
+    gains = [(row["value"], row["variant"], float(row["sparse_gain"])) for row in rows
+             if row["figure"] == "percent, sparse" and row["sparse_gain"]]
+    for variant in dict.fromkeys(variant for _, variant, _ in gains):
+        slower = [share for share, of, gain in gains if of == variant and gain < 1]
+        sentences.append(f"{variant}: the dense copy is faster " + (
+            f"from {min(slower):g} % on" if slower else "at no share"))
     return sentences
 
 
@@ -102,7 +131,7 @@ EXPERIMENT = Experiment(
     "media", __doc__.splitlines()[0], configurations,
     Plot("lines", "A cloud: time of the megakernel by that of the wavefront",
          "", "megakernel / wavefront", y="ratio", mark=1.0),
-    add_arguments=add_arguments, finish=finish, conclude=conclude, table=("ratio_median",))
+    add_arguments=add_arguments, finish=finish, conclude=conclude, table=("ratio_median", "sparse_gain", "ns_per_ray"))
 
 if __name__ == "__main__":
     sys.exit(harness.main(EXPERIMENT))

@@ -48,12 +48,13 @@ struct FlightReserve {
   }
 };
 
-/// Takes all flights of a queue to their ends, by all threads of the warp together. `flights` has
+/// Takes all flights of a queue to their ends, by all threads of the warp together; `has_sparse`:
+/// see sample_grid(). `flights` has
 ///   take(reserve, lane, wanted, count)   as FlightReserve does
 ///   start(index, flight)                 false: that flight was done at once
 ///   medium(flight)
 ///   finish(flight, event, t)
-template <bool has_sparse, class Flights>
+template <bool has_sparse = false, class Flights>
 __device__ void fly_by_warps(const VolumeGrids& grids, const Flights& flights) {
   using State = CellWalk::State;
   // By simulation of the flights of `cloud`, from thin to dense.
@@ -93,7 +94,7 @@ __device__ void fly_by_warps(const VolumeGrids& grids, const Flights& flights) {
       }
     } else if (walking > 0) {
       do {
-        if (state == State::walks) state = walk.step(grids, *grid);
+        if (state == State::walks) state = walk.step<has_sparse>(grids, *grid);
         walking = __popc(lanes_that(state == State::walks));
       } while (walking >= walking_least);
     } else {

@@ -55,7 +55,7 @@ void run_block(const ShadowRays& stage, const BlockTraits& traits, const SampleB
   for (std::uint32_t i = 0; i < count; ++i) {
     const bool is_occluded = (occluded >> i & 1u) != 0;
     if (traits.has_media && !is_occluded)
-      AttenuateShadowRays<true>{stage.pool, samples}(scene, slots[i], i);
+      AttenuateShadowRays{stage.pool, samples}(scene, slots[i], i);
     const ShadowRay shadow = stage.pool.load_shadow(slots[i], path_index);
     send(slots[i], stage.finish(path_index, shadow, is_occluded));
   }

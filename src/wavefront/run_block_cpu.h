@@ -19,8 +19,8 @@ template <class Traits>
 constexpr BlockTraits block_traits(const IntersectRays<Traits>&) {
   return {Traits::accel, Traits::geometry, Traits::has_masks, Traits::has_media};
 }
-template <class Traits, bool has_sparse>
-constexpr BlockTraits block_traits(const TraceShadowRays<Traits, has_sparse>&) {
+template <class Traits>
+constexpr BlockTraits block_traits(const TraceShadowRays<Traits>&) {
   return {Traits::accel, Traits::geometry, Traits::has_masks, Traits::has_media};
 }
 
@@ -29,8 +29,8 @@ template <class Stage>
 inline constexpr bool traces_media = false;
 template <class Traits>
 inline constexpr bool traces_media<IntersectRays<Traits>> = Traits::has_media;
-template <class Traits, bool has_sparse>
-inline constexpr bool traces_media<TraceShadowRays<Traits, has_sparse>> = Traits::has_media;
+template <class Traits>
+inline constexpr bool traces_media<TraceShadowRays<Traits>> = Traits::has_media;
 
 /// Whether the stage runs so; with media where each boundary has a BSDF, so that a shadow ray ends
 /// at the first surface.
@@ -38,7 +38,7 @@ template <class Stage>
 inline constexpr bool runs_in_blocks = false;
 template <class Traits>
 inline constexpr bool runs_in_blocks<IntersectRays<Traits>> = traces_blocks<Traits>;
-template <class Traits, bool has_sparse>
-inline constexpr bool runs_in_blocks<TraceShadowRays<Traits, has_sparse>> = traces_blocks<Traits>;
+template <class Traits>
+inline constexpr bool runs_in_blocks<TraceShadowRays<Traits>> = traces_blocks<Traits>;
 
 }  // namespace pt

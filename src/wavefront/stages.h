@@ -199,9 +199,15 @@ struct RepeatPaths {
   }
 };
 
-/// What tracing depends on: scenes that differ in their light alone share its kernels.
+/// What tracing depends on: scenes that differ in their light or in how grids are stored share its
+/// kernels.
 template <class T>
 using RayTraits = Traits<T::accel, T::geometry, Lighting::sky, T::has_masks, T::has_media>;
+
+/// The same of shadow rays, which are attenuated by media.
+template <class T>
+using ShadowRayTraits =
+    Traits<T::accel, T::geometry, Lighting::sky, T::has_masks, T::has_media, T::has_sparse>;
 
 /// The next rays of paths: what is traced, and what becomes of a path when its hit is known.
 struct PathRays {
@@ -264,8 +270,8 @@ PT_HD Next after_flight(const Hit& hit) {
 }
 
 /// The free flights of paths in media: to a collision, or to what their rays have hit. One that is
-/// not there after `collisions_max` null collisions goes on in the next wave.
-/// has_sparse: as sample_grid().
+/// not there after `collisions_max` null collisions goes on in the next wave. `has_sparse`: see
+/// sample_grid().
 template <bool has_sparse>
 struct SampleMedium {
   static constexpr StageId id = StageId::sample_medium;
@@ -437,8 +443,7 @@ struct ShadowRays {
 };
 
 /// Dims shadow rays by the media in which they begin, and end, since every boundary there has a
-/// BSDF and is opaque to them: for tracers that find occlusion only.
-template <bool has_sparse>
+/// BSDF and is opaque to them: for tracers that find occlusion only, on CUDA without sparse grids.
 struct AttenuateShadowRays {
   static constexpr StageId id = StageId::shadow;
   static constexpr StageOutcomes outcomes = {{free_slot}, false, false};
@@ -454,13 +459,13 @@ struct AttenuateShadowRays {
     set_lanes(shadow.ray, pool.shadow_lanes(lanes_of(scene), slot));
     const std::uint32_t key =
         shadow_ray_key(scene, media_key(scene, samples, path_index), pool.load_shadow_rays(slot));
-    pool.dim_shadow(slot, segment_transmittance<has_sparse>(scene, medium_id, shadow.ray,
-                                                            shadow.distance, key, 0));
+    pool.dim_shadow(
+        slot, segment_transmittance<false>(scene, medium_id, shadow.ray, shadow.distance, key, 0));
     return {free_slot};
   }
 };
 
-template <class Traits, bool has_sparse>
+template <class Traits>
 struct TraceShadowRays : ShadowRays {
   static constexpr SphereAccess spheres = SphereAccess::once;
 
@@ -474,7 +479,7 @@ struct TraceShadowRays : ShadowRays {
     }
     if constexpr (Traits::has_media) {
       shadow.medium_id = pool.load_shadow_medium_id(slot);
-      const Color passed = shadow_transmittance<Traits, has_sparse>(scene, shadow, key);
+      const Color passed = shadow_transmittance<Traits>(scene, shadow, key);
       shadow.radiance = multiply_rounded(shadow.radiance, passed);
       return finish(path_index, shadow, false);
     }

@@ -41,7 +41,6 @@ struct WavePolicy {
   bool only_triangles = false;                 ///< no instances, no spheres
   bool has_media = false;
   bool has_volumes = false;      ///< media with grids of densities
-  bool has_sparse = false;       ///< grids that are sparse
   PathPool::Fields fields = {};  ///< what a path's slot stores
 
   WavePolicy() = default;
@@ -54,7 +53,6 @@ struct WavePolicy {
         only_triangles(scene.has_only_triangles()),
         has_media(traits.has_media),
         has_volumes(has_grids),
-        has_sparse(scene.grids.nodes != nullptr),
         fields{.lights = traits.has_lights() && !plan.fused,
                .instances = traits.geometry == Geometry::mixed,
                .tags = !compaction.appends,

@@ -59,17 +59,8 @@ void trace_rays(Executor& execute, const WaveBuffers& b, const SampleBuffer& sam
   execute.run(IntersectRays<RayTraits<Traits>>{{b.pool, parts_misses}, samples}, rays);
 }
 
-/// Calls function(constant): whether stages look sparse grids up.
-template <bool has_media, class Function>
-void with_sparse(const WaveBuffers& b, Function&& function) {
-  if constexpr (has_media) {
-    if (b.policy.has_sparse) return function(std::true_type());
-  }
-  function(std::false_type());
-}
-
 /// The free flights of paths in media, by persistent warps or by a thread each, as with rays.
-template <class Executor>
+template <class Traits, class Executor>
 void fly(Executor& execute, const WaveBuffers& b, const SampleBuffer& samples) {
   constexpr StageId id = StageId::sample_medium;
   const StageQueues flights = b.stage_queues(id, b.waiting(id), b.pool.tag);
@@ -80,9 +71,7 @@ void fly(Executor& execute, const WaveBuffers& b, const SampleBuffer& samples) {
       return;
     }
   }
-  with_sparse<true>(b, [&](auto has_sparse) {
-    execute.run(SampleMedium<has_sparse()>{b.pool, samples, b.policy.wave_collisions}, flights);
-  });
+  execute.run(SampleMedium<Traits::has_sparse>{b.pool, samples, b.policy.wave_collisions}, flights);
 }
 
 /// Paths in media take their free flights first. All paths then wait for their next event: a miss,
@@ -92,7 +81,7 @@ void sample_media(Executor& execute, const WaveBuffers& b, const SampleBuffer& s
   using enum StageId;
   if constexpr (Traits::has_media) {
     execute.compact(b.request<sample_medium>(b.pool.tag));
-    fly(execute, b, samples);
+    fly<Traits>(execute, b, samples);
   }
   // A pass on CUDA fills at most two queues, and may use the count behind them.
   execute.compact(b.request<shade_miss, shade_surface>(b.pool.tag));
@@ -141,7 +130,7 @@ template <class Traits, class Source, class Executor>
 void shade_media(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
   if constexpr (Traits::has_media) {
     constexpr StageId id = StageId::shade_medium;
-    execute.run(ShadeMedium<ShadingTraits<Traits>, Source>{context},
+    execute.run(ShadeMedium<CollisionTraits<Traits>, Source>{context},
                 b.stage_queues(id, b.waiting(id), b.pool.tag));
   }
 }
@@ -155,17 +144,11 @@ void trace_shadow_rays(Executor& execute, const WaveBuffers& b, const SampleBuff
         b.stage_queues(StageId::shadow, b.waiting(StageId::shadow), b.pool.shadow_tag);
     if constexpr (Executor::template traces_queues<Traits>) {
       if (rays.appends && execute.traces_queues_here()) {
-        if constexpr (Traits::has_media) {
-          with_sparse<true>(b, [&](auto has_sparse) {
-            execute.run(AttenuateShadowRays<has_sparse()>{b.pool, samples}, rays);
-          });
-        }
+        if constexpr (Traits::has_media) execute.run(AttenuateShadowRays{b.pool, samples}, rays);
         return execute.trace_shadow_queue(rays, samples);
       }
     }
-    with_sparse<Traits::has_media>(b, [&](auto has_sparse) {
-      execute.run(TraceShadowRays<RayTraits<Traits>, has_sparse()>{{b.pool, samples}}, rays);
-    });
+    execute.run(TraceShadowRays<ShadowRayTraits<Traits>>{{b.pool, samples}}, rays);
   }
 }
 

@@ -21,9 +21,8 @@ template <class Stage, SceneMemory>
 inline constexpr bool is_in_table = true;
 template <class T, SceneMemory memory>
 inline constexpr bool is_in_table<IntersectRays<T>, memory> = traces_rays(T::value(), memory);
-template <class T, bool has_sparse, SceneMemory memory>
-inline constexpr bool is_in_table<TraceShadowRays<T, has_sparse>, memory> = traces_rays(T::value(),
-                                                                                        memory);
+template <class T, SceneMemory memory>
+inline constexpr bool is_in_table<TraceShadowRays<T>, memory> = traces_rays(T::value(), memory);
 template <class T, class Source, SceneMemory memory>
 inline constexpr bool is_in_table<FollowPaths<T, Source>, memory> =
     KernelSelection<true, Source, memory, KernelBody::fused>::has(T::value());

@@ -5,8 +5,8 @@
 namespace pt {
 
 void WavefrontCuda::fly_queue(const StageQueues& queues, const SampleBuffer& samples) {
-  const auto kernel = scene_.grids.nodes != nullptr ? fly_flights_of_queue<QueuedFlights, true>
-                                                    : fly_flights_of_queue<QueuedFlights, false>;
+  const auto kernel = traits_.has_sparse ? fly_flights_of_queue<QueuedFlights, true>
+                                         : fly_flights_of_queue<QueuedFlights, false>;
   const std::uint32_t blocks =
       resident_blocks(reinterpret_cast<const void*>(kernel), flight_block, 0);
   constexpr StageId id = StageId::sample_medium;

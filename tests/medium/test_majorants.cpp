@@ -122,6 +122,62 @@ TEST(Majorants, OnlyDensitiesHaveThem) {
   }
 }
 
+/// The least of |i|, |j|, |k| at which a cell differs from one that is not empty.
+int empty_steps(const std::vector<float>& majorants, const GridSize& size, int x, int y, int z) {
+  int nearest = 1 << 20;
+  std::size_t cell = 0;
+  for (int k = 0; k < static_cast<int>(size[2]); ++k) {
+    for (int j = 0; j < static_cast<int>(size[1]); ++j) {
+      for (int i = 0; i < static_cast<int>(size[0]); ++i) {
+        if (!(majorants[cell++] > 0)) continue;
+        const int farthest = std::max({std::abs(x - i), std::abs(y - j), std::abs(z - k)});
+        nearest = std::min(nearest, farthest);
+      }
+    }
+  }
+  return nearest;
+}
+
+/// The same, with distances in empty cells.
+std::vector<float> with_distances(const std::vector<float>& majorants, const GridSize& size) {
+  std::vector<float> result = majorants;
+  for (std::size_t cell = 0; cell < result.size(); ++cell) {
+    if (result[cell] > 0) continue;
+    const auto x = static_cast<int>(cell % size[0]), y = static_cast<int>(cell / size[0] % size[1]),
+               z = static_cast<int>(cell / size[0] / size[1]);
+    result[cell] = -static_cast<float>(empty_steps(majorants, size, x, y, z));
+  }
+  return result;
+}
+
+// Beside a sparse grid, empty cells say how far the next one is that is not.
+TEST(Majorants, SayHowFarEmptySpaceGoes) {
+  TestRandom random(48);
+  SceneData scene;
+  scene.grid_nodes.resize(1);
+  std::vector<GridSize> sizes{{33, 70, 17}, {128, 90, 100}, {512, 1, 9}, {40, 40, 40}};
+  for (const GridSize& size : sizes) {
+    Medium medium;
+    const bool is_empty = size[0] == 40;
+    medium.density_grid =
+        add_grid(scene, make_volume(size, 1, true, Affine(), [&](const GridSize&, std::uint32_t) {
+                   return !is_empty && random.uniform(0, 1) < 2e-5 ? 1.0 : 0.0;
+                 }));
+    scene.media.push_back(medium);
+  }
+  prepare_media(scene);
+  for (const VolumeGrid& grid : scene.grids) {
+    const GridSize cells{grid.cells[0], grid.cells[1], grid.cells[2]};
+    const auto first = scene.majorants.begin() + grid.first_cell;
+    const std::vector<float> majorants(first, first + cells[0] * cells[1] * cells[2]);
+    const std::vector<float> expected = with_distances(majorants, cells);
+    EXPECT_LT(*std::ranges::min_element(majorants), -1);
+    for (std::size_t i = 0; i < majorants.size(); ++i) {
+      ASSERT_EQ(std::max(majorants[i], -1048576.0f), expected[i]) << i;
+    }
+  }
+}
+
 /// A grid of majorants alone.
 struct MajorantCase {
   SceneData scene;
@@ -320,6 +376,57 @@ TEST(MajorantWalks, OfOneRayMayFollowEachOther) {
       t = found.t, arrives = found.arrives;
     }
   }
+}
+
+// A jump over empty cells is worth the steps from cell to cell, to the last bit: also where walls
+// meet, along axes, and far from the grid, where many walls are at the same distance.
+TEST(MajorantWalks, JumpOverEmptySpaceToWhereStepsLead) {
+  TestRandom random(47);
+  const float root = 0.70710678f;
+  const Vec3 directions[] = {Vec3(1, 0, 0),        Vec3(0, -1, 0),    Vec3(root, root, 0),
+                             Vec3(-root, 0, root), Vec3(0.57735027f), Vec3(-0.57735027f),
+                             Vec3(0.6f, -0.8f, 0), Vec3(0, 0, -1)};
+  int differ = 0, reached = 0, shorter = 0;
+  for (const GridSize& cells : {GridSize{5, 3, 7}, GridSize{2, 64, 1}, GridSize{12, 12, 12}}) {
+    for (int i = 0; i < 60; ++i) {
+      const bool is_exact = i % 2 == 0;
+      const Affine to_world = is_exact
+                                  ? scale(Vec3(float(cells[0]), float(cells[1]), float(cells[2])))
+                                  : random_place(random);
+      MajorantCase steps(random, cells, inverse(to_world));
+      for (float& majorant : steps.scene.majorants) {
+        if (random.uniform(0, 1) < 0.2 * (i % 6)) majorant = 0;
+      }
+      MajorantCase jumps = steps;
+      jumps.scene.majorants = with_distances(steps.scene.majorants, cells);
+      for (int n = 0; n < 200; ++n) {
+        const float far = n % 20 == 0 ? 3e4f : 1.0f;
+        Ray ray{to_world.point(far * Vec3(random.point(1) + 0.5)), Vec3(random.direction())};
+        if (is_exact) {
+          for (int axis = 0; axis < 3; ++axis)
+            ray.origin[axis] = std::round(2 * ray.origin[axis]) / 2;
+          ray.direction = directions[n % 8];
+        } else if (far > 1) {
+          ray.direction = to_world.point(Vec3(random.point(0.5) + 0.5)) - ray.origin;
+        }
+        ray.direction = normalize(ray.direction);
+        const float t_max =
+            n % 3 == 0 ? infinite_distance : static_cast<float>(random.uniform(0, 20));
+        const auto wanted = static_cast<float>(random.log_uniform(1e-3, 30));
+        const MajorantWalk a = steps.walk(ray, 0, t_max, wanted),
+                           b = jumps.walk(ray, 0, t_max, wanted);
+        differ +=
+            a.t == b.t && a.depth == b.depth && a.majorant == b.majorant && a.arrives == b.arrives
+                ? 0
+                : 1;
+        reached += a.arrives ? 0 : 1;
+      }
+      for (const float majorant : jumps.scene.majorants) shorter += majorant < -1 ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(differ, 0);
+  EXPECT_GT(reached, 3000);
+  EXPECT_GT(shorter, 3000);
 }
 
 // Where a cell's wall is, walks from both of its sides agree on what lies ahead.

@@ -31,8 +31,10 @@ void for_each_need(EnumSet<Content> contents, Function&& function) {
               }
               for (const bool masks : {false, true}) {
                 for (const bool media : {false, true}) {
-                  need.scene = general_traits(Accel{accel}, contents, masks, media);
-                  function(need);
+                  for (const bool sparse : {false, on_cuda && media}) {
+                    need.scene = general_traits(Accel{accel}, contents, masks, media, sparse);
+                    function(need);
+                  }
                 }
               }
             }
@@ -61,7 +63,8 @@ TEST(Kernels, ARefusalNamesAKernelOfTheSameScene) {
             const auto& s = need.scene;
             const Accel accel = accel_of(parse_name<AccelKind>("accel", value));
             if (s.geometry != Geometry::spheres_and_quads)
-              other.scene = general_traits(accel, need.contents, s.has_masks, s.has_media);
+              other.scene =
+                  general_traits(accel, need.contents, s.has_masks, s.has_media, s.has_sparse);
             other.scene.accel = accel;
           } else if (option == "--scene-memory") {
             other.memory = parse_name<SceneMemory>("scene-memory", value);

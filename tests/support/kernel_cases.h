@@ -4,6 +4,8 @@
 #include <map>
 
 #include "common/plan/plan_steps.h"
+#include "common/scene/builtin/generated_scenes.h"
+#include "common/scene/load/files/volumes/volume_files.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "medium/filled_glasses.h"
 #include "mode_cases.h"
@@ -20,6 +22,8 @@ inline SceneData scene_of(const KernelRow& row, Lighting light) {
   if (row.geometry == Geometry::spheres_and_quads)
     return built_in(light == Lighting::sky ? "spheres" : "cornell");
   if (row.extras == Extras::with_media) return filled_glasses();
+  if (row.extras == Extras::with_sparse)
+    return make_cloud_scene({64, 10, 0.9f, true}, VolumeStorage::sparse);
   SceneData scene = built_in(
       row.geometry == Geometry::mixed && row.extras == Extras::plain ? "instances:20" : "boxes");
   if (row.extras == Extras::with_masks) {
@@ -63,6 +67,7 @@ void for_each_kernel(bool on_cuda, Function&& function) {
   };
   for (const KernelRow& row : kernel_table) {
     if (row.on_cuda != on_cuda) continue;
+    if (row.extras == Extras::with_sparse && !reads_nanovdb()) continue;
     int records = 0;
     while (records <= 16 && !row.extra.contains(ExtraRecords{records})) ++records;
     if (records > 16) continue;  // not in this build

@@ -10,6 +10,7 @@
 #include "common/render/film_renderer.h"
 #include "common/render/memory_share.h"
 #include "common/scene/builtin/builtin_scenes.h"
+#include "common/scene/builtin/generated_scenes.h"
 #include "common/scene/load/files/scene_files.h"
 #include "common/scene/load/load_scene.h"
 #include "common/scene/prepare/prepare_scene.h"
@@ -58,7 +59,7 @@ SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& 
   if (options.default_lighting != DefaultLighting::automatic)
     throw Error(fmt::format("--default-lighting: is for scene files; '{}' is a built-in scene",
                             options.scene));
-  if (options.volume != VolumeStorage::automatic && !options.scene.ends_with(":sparse"))
+  if (options.volume != VolumeStorage::automatic && !is_sparse_cloud(options.scene))
     throw Error(fmt::format("--volume: is for scene files and cloud:N:T:A:sparse, not for '{}'",
                             options.scene));
   if (options.create_world == WorldBuilder::host) return build_scene(options);

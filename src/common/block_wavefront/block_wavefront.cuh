@@ -235,7 +235,7 @@ PT_NOINLINE inline TravelledPath travel_out_of_line(const Scene& scene, Ray ray,
                                                     std::uint32_t path_key, PathState path,
                                                     Hit hit) {
   FreeFlight flight;
-  travel(scene, ray, path_key, to_the_end, path, flight, hit);
+  travel<false>(scene, ray, path_key, to_the_end, path, flight, hit);
   return {path, hit};
 }
 
@@ -244,7 +244,7 @@ PT_NOINLINE inline Color shadow_passes_out_of_line(const Scene& scene, std::uint
                                                    const PathSlot& slot, std::uint32_t ray_key) {
   float distance;
   const Ray ray = slot.load_shadow_ray(distance);
-  return segment_transmittance(scene, medium_id, ray, distance, ray_key, 0);
+  return segment_transmittance<false>(scene, medium_id, ray, distance, ray_key, 0);
 }
 
 /// One thread's view. Traits: as for BlockWavefrontLane; Source: one whose streams are opened again

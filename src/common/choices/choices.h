@@ -35,6 +35,7 @@ struct SceneTraits {
   Lighting lighting = Lighting::sky;
   bool has_masks = false;
   bool has_media = false;
+  bool has_sparse = false;  ///< with has_media: grids may be sparse; CUDA's kernels alone ask
 
   constexpr bool operator==(const SceneTraits&) const = default;
   constexpr bool has_lights() const { return lighting != Lighting::sky; }

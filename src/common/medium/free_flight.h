@@ -83,7 +83,7 @@ struct CollisionDraw {
 
 /// Decides between a real and a null collision at the end of a walk: delta tracking (Woodcock et
 /// al. 1965; Miller et al. 2019), with majorants that are constant in cells.
-template <bool has_sparse = true>
+template <bool has_sparse = false>
 PT_HD FlightEvent end_walk(const VolumeGrids& grids, const Medium& medium, const Ray& ray,
                            const MajorantWalk& walk, const CollisionDraw& draw, FreeFlight& flight,
                            ChannelDensities& densities, Color& beta) {
@@ -116,20 +116,20 @@ PT_HD FlightEvent end_walk(const VolumeGrids& grids, const Medium& medium, const
 }
 
 /// Advances a flight in a medium with a grid to its next collision, null or real, or to `t_max`.
-template <bool has_sparse = true>
+template <bool has_sparse = false>
 PT_HD FlightEvent fly_to_collision(const VolumeGrids& grids, const Medium& medium, const Ray& ray,
                                    float t_max, std::uint32_t key, FreeFlight& flight,
                                    ChannelDensities& densities, Color& beta) {
   const CollisionDraw draw(key, flight, densities);
-  const MajorantWalk walk = walk_majorants(grids, grids.grids[medium.density_grid], ray, flight.t,
-                                           t_max, draw.depth(medium));
+  const MajorantWalk walk = walk_majorants<has_sparse>(grids, grids.grids[medium.density_grid], ray,
+                                                       flight.t, t_max, draw.depth(medium));
   return end_walk<has_sparse>(grids, medium, ray, walk, draw, flight, densities, beta);
 }
 
 /// An unbiased estimate of the transmittance of `t_max` of a ray: ratio tracking (Novak et al.
 /// 2014, 'Residual ratio tracking for estimating attenuation in participating media') by the
 /// channel of the largest extinction, with roulette where little is left.
-template <bool has_sparse = true>
+template <bool has_sparse = false>
 PT_HD Color estimate_transmittance(const VolumeGrids& grids, const Medium& medium, const Ray& ray,
                                    float t_max, std::uint32_t key) {
   if (medium.is_homogeneous()) return transmittance(medium.extinction, t_max);
@@ -144,7 +144,7 @@ PT_HD Color estimate_transmittance(const VolumeGrids& grids, const Medium& mediu
   for (std::uint32_t collisions = 0;; ++collisions) {
     const std::uint32_t event = combine_hash(key, collisions);
     const float depth = sample_exponential(largest, to_unit_float(combine_hash(event, 0)));
-    const MajorantWalk walk = walk_majorants(grids, grid, ray, t, t_max, depth);
+    const MajorantWalk walk = walk_majorants<has_sparse>(grids, grid, ray, t, t_max, depth);
     if (walk.arrives) return estimate;
     lanes_of(ray).count(LanePoint::flight);
     t = walk.t;

@@ -58,10 +58,19 @@ class CellWalk {
     return State::walks;
   }
 
-  /// Goes through the present cell.
+  /// Goes through the present cell or, if it is empty, with those around it. `has_sparse`: the
+  /// scene has sparse grids, and so distances in empty cells; see sample_grid().
+  template <bool has_sparse = false>
   PT_HD State step(const VolumeGrids& grids, const VolumeGrid& grid) {
     const float cell_end = fmaxf(fminf(fminf(end_.x, end_.y), fminf(end_.z, last_)), t_);
     majorant_ = grids.majorants[grid.first_cell + x_ + grid.cells[0] * (y_ + grid.cells[1] * z_)];
+    if constexpr (has_sparse || !runs_on_gpu) {
+      if (majorant_ < 0.0f) {
+        const auto reach = static_cast<std::uint32_t>(-majorant_) - 1;
+        majorant_ = 0.0f;
+        return jump(grid, reach);
+      }
+    }
     const float deeper = fused_multiply_add(majorant_, cell_end - t_, depth_);
     if (deeper > depth_goal_) {
       t_ = fminf(t_ + divide(depth_goal_ - depth_, majorant_), cell_end);
@@ -94,6 +103,54 @@ class CellWalk {
   }
 
  private:
+  /// Goes through all empty cells that differ from the present one by at most `reach` along each
+  /// axis. It ends as steps from cell to cell do, with the same bits: these cross the walls in the
+  /// order of their distances, at the same distance in that of the axes, and the distance of a wall
+  /// depends on nothing else.
+  PT_HD State jump(const VolumeGrid& grid, std::uint32_t reach) {
+    const auto farthest = [&](std::uint32_t cell, std::uint32_t count, float inverse_way) {
+      return inverse_way > 0.0f   ? min_integer(cell + reach, count - 1)
+             : inverse_way < 0.0f ? cell - min_integer(cell, reach)
+                                  : cell;
+    };
+    const std::uint32_t x = farthest(x_, grid.cells[0], inverse_.x),
+                        y = farthest(y_, grid.cells[1], inverse_.y),
+                        z = farthest(z_, grid.cells[2], inverse_.z);
+    const Vec3 out(end_of(x, grid.cells[0], origin_.x, inverse_.x),
+                   end_of(y, grid.cells[1], origin_.y, inverse_.y),
+                   end_of(z, grid.cells[2], origin_.z, inverse_.z));
+    const float end = fminf(fminf(out.x, out.y), out.z);
+    t_ = fmaxf(fminf(end, last_), t_);
+    if (t_ >= last_) return State::arrives;
+    const bool leaves_x = out.x <= out.y && out.x <= out.z, leaves_y = !leaves_x && out.y <= out.z;
+    const Vec3 at = add_scaled(origin_, end, direction_);
+    // `ties`: crosses walls at the distance where the ray leaves the cells along another axis.
+    const auto advance = [&](std::uint32_t& cell, float& cell_end, std::uint32_t last, bool leaves,
+                             bool ties, std::uint32_t count, float from, float inverse_way,
+                             float place) {
+      const auto wall = [&](std::uint32_t c) { return end_of(c, count, from, inverse_way); };
+      const auto crosses = [&](float distance) { return ties ? distance <= end : distance < end; };
+      const std::uint32_t way = inverse_way > 0.0f ? 1 : ~0u;
+      const std::uint32_t first = cell;
+      if (leaves) {
+        cell = last + way, cell_end = wall(cell);
+        return;
+      }
+      // Near where rounding has it, between the first and the last.
+      const std::uint32_t near = detail::clamp_voxel(floorf(place), count);
+      cell = inverse_way > 0.0f ? min_integer(max_integer(near, first), last)
+                                : max_integer(min_integer(near, first), last);
+      cell_end = wall(cell);
+      while (crosses(cell_end)) cell += way, cell_end = wall(cell);
+      while (cell != first && !crosses(wall(cell - way))) cell -= way, cell_end = wall(cell);
+    };
+    advance(x_, end_.x, x, leaves_x, true, grid.cells[0], origin_.x, inverse_.x, at.x);
+    advance(y_, end_.y, y, leaves_y, !leaves_x, grid.cells[1], origin_.y, inverse_.y, at.y);
+    advance(z_, end_.z, z, !leaves_x && !leaves_y, false, grid.cells[2], origin_.z, inverse_.z,
+            at.z);
+    return State::walks;
+  }
+
   /// Where the ray leaves a cell along an axis. Outermost cells have no end outwards.
   PT_HD static float end_of(std::uint32_t cell, std::uint32_t count, float from,
                             float inverse_way) {
@@ -114,11 +171,12 @@ class CellWalk {
 
 /// Walks from `t` until the integral of the majorants over the distance is `depth_goal`, or to
 /// `t_max`. It depends only on its arguments, so a flight may pause at any collision.
+template <bool has_sparse = false>
 PT_HD MajorantWalk walk_majorants(const VolumeGrids& grids, const VolumeGrid& grid, const Ray& ray,
                                   float t, float t_max, float depth_goal) {
   CellWalk walk(grid, ray, t_max);
   CellWalk::State state = walk.begin(grid, t, depth_goal);
-  while (state == CellWalk::State::walks) state = walk.step(grids, grid);
+  while (state == CellWalk::State::walks) state = walk.step<has_sparse>(grids, grid);
   return walk.result(state, t_max);
 }
 

@@ -60,9 +60,10 @@ PT_NOINLINE inline Color sample_sparse(const SparseBlock* root, const float* col
                                        const VolumeGrid* grid, Vec3 p) {
   const VoxelPair x = voxels_at(*grid, 0, p.x), y = voxels_at(*grid, 1, p.y),
                   z = voxels_at(*grid, 2, p.z);
+  const std::int32_t* const first = reinterpret_cast<const SparseHead*>(root - 1)->low;
   const auto places = [&](int axis, const VoxelPair& pair, std::int32_t(&coordinates)[2]) {
-    coordinates[0] = grid->low[axis] + static_cast<std::int32_t>(pair.low);
-    coordinates[1] = grid->low[axis] + static_cast<std::int32_t>(pair.high);
+    coordinates[0] = first[axis] + static_cast<std::int32_t>(pair.low);
+    coordinates[1] = first[axis] + static_cast<std::int32_t>(pair.high);
   };
   std::int32_t i[2], j[2], k[2];
   places(0, x, i), places(1, y, j), places(2, z, k);
@@ -82,13 +83,13 @@ PT_NOINLINE inline Color sample_sparse(const SparseBlock* root, const float* col
 
 }  // namespace detail
 
-/// The grid's value at a point of the world; a single channel is grey. `has_sparse`: it may be
-/// sparse; the call costs registers, which kernels of scenes without sparse grids keep.
-template <bool has_sparse = true>
+/// The grid's value at a point of the world; a single channel is grey. Code for a GPU looks sparse
+/// grids up only with `has_sparse`, since the call costs registers; code for a CPU always does.
+template <bool has_sparse = false>
 PT_HD Color sample_grid(const VolumeGrids& grids, const VolumeGrid& grid, const Vec3& point) {
   const Vec3 p = grid.to_unit.point(point);
   const float* const values = grids.values + grid.first;
-  if constexpr (has_sparse) {
+  if constexpr (has_sparse || !runs_on_gpu) {
     if (grid.root != 0) return detail::sample_sparse(grids.nodes + grid.root, values, &grid, p);
   }
   if (grid.channels == 1) {
@@ -100,17 +101,19 @@ PT_HD Color sample_grid(const VolumeGrids& grids, const VolumeGrid& grid, const 
 }
 
 /// The medium's albedo at a point.
+template <bool has_sparse = false>
 PT_HD Color albedo_at(const VolumeGrids& grids, const Medium& medium, const Vec3& point) {
   if (medium.albedo_grid == no_grid) return medium.albedo;
   return multiply_rounded(medium.albedo,
-                          sample_grid(grids, grids.grids[medium.albedo_grid], point));
+                          sample_grid<has_sparse>(grids, grids.grids[medium.albedo_grid], point));
 }
 
 /// The radiance of the absorbing matter at a point.
+template <bool has_sparse = false>
 PT_HD Color emission_at(const VolumeGrids& grids, const Medium& medium, const Vec3& point) {
   if (medium.emission_grid == no_grid) return medium.emission;
   return multiply_rounded(medium.emission,
-                          sample_grid(grids, grids.grids[medium.emission_grid], point));
+                          sample_grid<has_sparse>(grids, grids.grids[medium.emission_grid], point));
 }
 
 }  // namespace pt

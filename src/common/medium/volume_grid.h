@@ -22,11 +22,10 @@ struct alignas(16) VolumeGrid {
   std::uint32_t interpolates =
       1;                   ///< trilinear between the middles of voxels; else constant in each
   std::uint32_t ends = 0;  ///< its outermost voxels are 0: it is empty beyond its cube
-  // A sparse grid is a tree of NanoVDB. With 3 channels its voxels have the bits of an index, from
-  // `first` on, into colours, of which the first is that of empty space.
-  std::uint32_t root = 0;         ///< index of the block where the tree's root begins; 0: dense
-  std::int32_t low[3] = {};       ///< the tree's coordinates of voxel (0, 0, 0)
-  std::uint32_t value_count = 0;  ///< of the values from `first` on
+  /// A sparse grid is a tree of NanoVDB: the index of the block where its root begins, behind its
+  /// SparseHead; 0: dense. With 3 channels its voxels have the bits of an index, from `first` on,
+  /// into colours, of which the first is that of empty space.
+  std::uint32_t root = 0;
 };
 
 /// What a tree consists of: nodes begin at such addresses.
@@ -34,11 +33,19 @@ struct alignas(32) SparseBlock {
   std::byte bytes[32];
 };
 
+/// What stands before a tree's root.
+struct alignas(32) SparseHead {
+  std::int32_t low[3];  ///< the tree's coordinates of voxel (0, 0, 0)
+};
+static_assert(sizeof(SparseHead) == sizeof(SparseBlock));
+
 /// The grids of a scene.
 struct VolumeGrids {
   const VolumeGrid* grids = nullptr;
   const float* values = nullptr;
-  const float* majorants = nullptr;    ///< per cell, an upper bound of the grid's values in it
+  /// Per cell, an upper bound of the grid's values in it. In a scene with sparse grids an empty
+  /// cell has -d instead: all cells that differ from it by less than d along each axis are empty.
+  const float* majorants = nullptr;
   const SparseBlock* nodes = nullptr;  ///< of the sparse grids
 };
 

@@ -282,11 +282,11 @@ class Planner {
   }
 
   /// Media through which rays are traced one by one: a shadow ray goes on behind the first surface.
-  /// Blocks on CUDA, which take the last paths, know no flights that pause.
+  /// Blocks on CUDA, which take the last paths, know no flights that pause and no sparse grids.
   bool has_open_media() const {
     const bool is_closed = scene_.has_only_triangles() && !scene_.has_open_boundaries &&
                            o_.stages != Stages::fused && o_.wave_collisions == 0 &&
-                           (!device_.is_cuda || blocks_have_room());
+                           (!device_.is_cuda || (blocks_have_room() && !scene_.has_sparse));
     return scene_.has_media && !is_closed;
   }
 

@@ -70,8 +70,9 @@ constexpr EnumSet<ExtraRecords> if_built(EnumSet<ExtraRecords> records) {
 
 inline constexpr int accel_count = static_cast<int>(Accel::cwbvh_avx2) + 1;
 
-/// What a kernel knows of a scene besides its geometry; `with_media`: and masks.
-enum class Extras { plain, with_masks, with_media };
+/// What a kernel knows of a scene besides its geometry; each has all of those before. A CPU's
+/// kernels with media know sparse grids, too.
+enum class Extras { plain, with_masks, with_media, with_sparse };
 
 /// What some kernels cannot have in a scene although its SceneTraits allow it.
 enum class Content { spheres, instances, open_boundaries };
@@ -127,6 +128,7 @@ inline constexpr KernelRow table[] = {
     {cuda, {loop, stages}, bvh2, mixed, full, plain, sampler},
     {cuda, {loop, stages}, bvh2, mixed, full, with_masks, sampler},
     {cuda, {loop, stages, fused}, bvh2, mixed, full, with_media, sampler},
+    {cuda, {loop, stages, fused}, bvh2, mixed, full, with_sparse, sampler},
     {cuda, fused, trees, mixed, full, plain, sampler},
     {cuda, fused, trees, mixed, full, with_masks, sampler},
     {cuda, {vote, blocks, warps}, cwbvh, triangles, full, plain, sampler},
@@ -156,7 +158,8 @@ struct KernelNeed {
 constexpr bool is_of_scene(const KernelRow& row, const SceneTraits& scene) {
   return row.geometry == scene.geometry && row.lighting.contains(scene.lighting) &&
          (row.extras >= Extras::with_masks) == scene.has_masks &&
-         (row.extras == Extras::with_media) == scene.has_media;
+         (row.extras >= Extras::with_media) == scene.has_media &&
+         (row.extras == Extras::with_sparse) == scene.has_sparse;
 }
 
 constexpr bool serves(const KernelRow& row, const KernelNeed& need) {
@@ -187,11 +190,12 @@ constexpr bool traces_rays(SceneTraits scene, SceneMemory memory) {
 
 /// The traits of a scene whose kernels are not the paper's, in this structure.
 constexpr SceneTraits general_traits(Accel accel, EnumSet<Content> contents, bool has_masks,
-                                     bool has_media) {
+                                     bool has_media, bool has_sparse = false) {
   const bool mixed = has_masks || has_media || accel == Accel::brute || accel == Accel::embree ||
                      contents.intersects({Content::spheres, Content::instances});
-  return {accel, mixed ? Geometry::mixed : Geometry::triangles, Lighting::full,
-          has_masks || has_media, has_media};
+  return {accel,          mixed ? Geometry::mixed : Geometry::triangles,
+          Lighting::full, has_masks || has_media,
+          has_media,      has_sparse};
 }
 
 /// Which parts of a need the user asked for; the plan chose the others.

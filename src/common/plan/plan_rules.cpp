@@ -105,6 +105,7 @@ std::string scene_text(const KernelNeed& need, const Options& o, const SceneProp
       {scene.instances > 0, "instances"},
       {scene.has_masks, "masks, a far plane or hidden emitters"},
       {scene.has_media, "media"},
+      {need.scene.has_sparse, "sparse grids"},
       {scene.has_open_boundaries, "boundaries without a BSDF"},
       {o.branching == Branching::reduced, "--branching reduced"},
       {o.rng == RngKind::xorwow, "--rng xorwow"}};
@@ -207,7 +208,8 @@ KernelNeed need_of(const ExecutionPlan& plan, const Options& o, const ScenePrope
     need.sources = o.rng == RngKind::philox ? NumberSource::philox : NumberSource::xorwow;
     if (on_cuda) need.memory = plan.scene_memory;
   } else {
-    need.scene = general_traits(plan.traversal, need.contents, scene.has_masks, scene.has_media);
+    need.scene = general_traits(plan.traversal, need.contents, scene.has_masks, scene.has_media,
+                                on_cuda && scene.has_sparse);
     need.sources = o.rng == RngKind::philox ? NumberSource::sampler : NumberSource::xorwow;
     if (o.scene_memory != SceneMemory::automatic) need.memory = o.scene_memory;
   }

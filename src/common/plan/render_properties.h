@@ -21,6 +21,7 @@ struct SceneProperties {
   bool is_primitive_only = false;    ///< nothing that the paper's scenes have not
   bool has_masks = false;            ///< triangles that not all rays meet
   bool has_media = false;            ///< between surfaces
+  bool has_sparse = false;           ///< grids of media
   bool has_open_boundaries = false;  ///< surfaces may let light through
   bool has_emitters = false;         ///< surfaces that shine
   bool has_rough_conductors = false;

@@ -36,12 +36,14 @@ inline constexpr bool is_cuda_code = true;
 inline constexpr bool is_cuda_code = false;
 #endif
 
-/// Whether pairs of halves (below) are computed by instructions.
+/// Whether it is being compiled for a GPU, where pairs of halves (below) are computed by
+/// instructions. A file for CUDA is also compiled for the CPU.
 #ifdef __CUDA_ARCH__
-inline constexpr bool has_half_pairs = true;
+inline constexpr bool runs_on_gpu = true;
 #else
-inline constexpr bool has_half_pairs = false;
+inline constexpr bool runs_on_gpu = false;
 #endif
+inline constexpr bool has_half_pairs = runs_on_gpu;
 
 PT_HD std::uint32_t float_to_bits(float x) {
 #ifdef __CUDA_ARCH__
@@ -367,6 +369,7 @@ PT_HD bool is_never() {
 }
 
 PT_HD std::uint32_t min_integer(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }
+PT_HD std::uint32_t max_integer(std::uint32_t a, std::uint32_t b) { return a < b ? b : a; }
 
 /// The index of the highest bit that is set; x is not 0.
 PT_HD std::uint32_t highest_bit(std::uint32_t x) {

@@ -47,15 +47,15 @@ struct CpuKernels {
 
 namespace detail {
 
-inline constexpr int traits_count = accel_count * 3 * 3 * 2 * 2;
+inline constexpr int traits_count = accel_count * 3 * 3 * 4;
 
-/// All combinations, by number.
+/// All combinations of kernels (Extras), by number.
 constexpr SceneTraits traits_at(int i) {
   SceneTraits traits;
   traits.accel = Accel{i % accel_count}, i /= accel_count;
   traits.geometry = Geometry{i % 3}, i /= 3;
   traits.lighting = Lighting{i % 3}, i /= 3;
-  traits.has_masks = i % 2 == 1, traits.has_media = i / 2 == 1;
+  traits.has_masks = i > 0, traits.has_media = i > 1, traits.has_sparse = i > 2;
   return traits;
 }
 
@@ -76,7 +76,7 @@ consteval int selected(int n) {
 
 template <int i>
 using TraitsAt = Traits<traits_at(i).accel, traits_at(i).geometry, traits_at(i).lighting,
-                        traits_at(i).has_masks, traits_at(i).has_media>;
+                        traits_at(i).has_masks, traits_at(i).has_media, traits_at(i).has_sparse>;
 
 template <class Selection, int... n>
 TypeList<TraitsAt<selected<Selection>(n)>...> traits_of(std::integer_sequence<int, n...>);

@@ -106,15 +106,15 @@ PT_HD ViewThroughMedia look_through_media(const Scene& scene, const Ray& camera_
     view.hit = intersect_closest<Traits>(scene, view.ray, ray_key);
     Hit end = view.hit;
     FreeFlight flight;
-    travel(scene, view.ray, path_key, to_the_end, path, flight, end);
+    travel<Traits::has_sparse>(scene, view.ray, path_key, to_the_end, path, flight, end);
     if (end.is_collision() && !view.collides) {
       view.collides = true, view.collision = view.distance + end.t;
     }
     if (path.medium.id != no_medium) {
       view.transmittance = multiply_rounded(
-          view.transmittance,
-          estimate_transmittance(scene.grids, load_wide(scene.media.at(path.medium.id)), view.ray,
-                                 view.hit.t, combine_hash(ray_key, 1)));
+          view.transmittance, estimate_transmittance<Traits::has_sparse>(
+                                  scene.grids, load_wide(scene.media.at(path.medium.id)), view.ray,
+                                  view.hit.t, combine_hash(ray_key, 1)));
     }
     if (view.hit.is_miss()) return view;
     const std::uint32_t index = material_index_at(scene, view.hit);

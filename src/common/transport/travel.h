@@ -48,8 +48,8 @@ PT_HD void begin_flight(const Scene& scene, PathState& path) {
 /// Takes a path to the end of its ray, `hit`, or to a collision before, which is then the hit.
 /// Multiplies its throughput by what the flight weighs. Returns whether it is there: after
 /// `collisions_max` null collisions it is not, and `flight` says where to go on. `path.rays` does
-/// not yet count the ray.
-template <bool has_sparse = true>
+/// not yet count the ray. `has_sparse`: see sample_grid().
+template <bool has_sparse = false>
 PT_HD bool travel(const Scene& scene, const Ray& ray, std::uint32_t path_key,
                   std::uint32_t collisions_max, PathState& path, FreeFlight& flight, Hit& hit) {
   if (!flight.has_begun()) begin_flight(scene, path);
@@ -77,7 +77,9 @@ template <class Traits>
 PT_HD Hit next_hit(const Scene& scene, const Ray& ray, std::uint32_t path_key, PathState& path,
                    FreeFlight flight = {}) {
   Hit hit = intersect_closest<Traits>(scene, ray, next_ray_key(scene, path_key, path.rays));
-  if constexpr (Traits::has_media) travel(scene, ray, path_key, to_the_end, path, flight, hit);
+  if constexpr (Traits::has_media) {
+    travel<Traits::has_sparse>(scene, ray, path_key, to_the_end, path, flight, hit);
+  }
   return hit;
 }
 
@@ -90,9 +92,10 @@ PT_HD_IN_KERNEL Scattering medium_scattering(const Scene& scene, const Ray& ray,
   lanes_of(ray).count(LanePoint::shade_medium);
   const Medium medium = load_wide(scene.media.at(path.medium.id));
   const Vec3 point = add_scaled(ray.origin, distance, ray.direction);
-  const Color albedo = albedo_at(scene.grids, medium, point);
+  const Color albedo = albedo_at<Traits::has_sparse>(scene.grids, medium, point);
   Scattering result;
-  const Color emission = emission_at(scene.grids, medium, point) * (Color(1.0f) - albedo);
+  const Color emission =
+      emission_at<Traits::has_sparse>(scene.grids, medium, point) * (Color(1.0f) - albedo);
   result.emitted = policy.emit(path.beta * emission);
   if (path.depth<Traits>() >= settings.max_depth || is_black(albedo)) return result;
   path.beta = multiply_rounded(path.beta, albedo);
@@ -133,7 +136,7 @@ PT_HD_IN_KERNEL Scattering medium_scattering(const Scene& scene, const Ray& ray,
 
 /// The transmittance of one segment of a shadow ray, of this length in one medium; `segment` is its
 /// number.
-template <bool has_sparse = true>
+template <bool has_sparse = false>
 PT_HD Color segment_transmittance(const Scene& scene, std::uint16_t medium_id, const Ray& ray,
                                   float length, std::uint32_t ray_key, std::uint32_t segment) {
   return estimate_transmittance<has_sparse>(scene.grids, load_wide(scene.media.at(medium_id)), ray,
@@ -142,7 +145,7 @@ PT_HD Color segment_transmittance(const Scene& scene, std::uint16_t medium_id, c
 
 /// The transmittance along a shadow ray: black if a surface with a BSDF lies between its ends, else
 /// that of the media and panes through which it goes.
-template <class Traits, bool has_sparse = true>
+template <class Traits>
 PT_HD Color shadow_transmittance(const Scene& scene, const ShadowRay& shadow,
                                  std::uint32_t ray_key) {
   Color result(1.0f);
@@ -158,7 +161,7 @@ PT_HD Color shadow_transmittance(const Scene& scene, const ShadowRay& shadow,
     }
     if (medium_id != no_medium) {
       const float length = arrives ? left : hit.t;
-      result = multiply_rounded(result, segment_transmittance<has_sparse>(
+      result = multiply_rounded(result, segment_transmittance<Traits::has_sparse>(
                                             scene, medium_id, ray, length, ray_key, segment));
     }
     if (arrives || is_black(result)) return result;

@@ -22,6 +22,13 @@
 namespace pt {
 namespace {
 
+/// Kernels of dense grids alone keep the registers that a lookup in a sparse one takes.
+SceneTraits traits_on_cuda(const SceneData& scene) {
+  SceneTraits traits = scene.traits;
+  traits.has_sparse = scene.properties.has_sparse;
+  return traits;
+}
+
 // One batch takes a tenth of a second at most, and 2 GiB for its samples.
 constexpr std::uint64_t batch_paths_max = std::uint64_t{1} << 27;
 constexpr std::uint64_t first_paths = std::uint64_t{1} << 24;  // of a scene of unknown speed
@@ -31,7 +38,7 @@ constexpr std::uint64_t first_paths = std::uint64_t{1} << 24;  // of a scene of 
 CudaRenderer::CudaRenderer(const ExecutionPlan& plan, const SceneData& scene, int device)
     : FilmRenderer(plan, scene),
       CudaLauncher(device, plan.limits),
-      traits_(scene.traits),
+      traits_(traits_on_cuda(scene)),
       primitive_count_(scene.primitive_count()),
       half_spheres_(scene.half_spheres) {
   const WallTimer watch;

@@ -33,7 +33,8 @@ FeatureKernel feature_kernel(const SceneTraits& traits) {
                          Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
                          Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>,
                          Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true, true>,
-                         Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true, true>>;
+                         Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true, true>,
+                         Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true, true, true>>;
   FeatureKernel kernel = nullptr;
   dispatch_traits(Kinds{}, needed, [&](auto kind) { kernel = find_features<decltype(kind)>; });
   return kernel;

@@ -118,9 +118,9 @@ const std::vector<SceneInfo>& scene_list() {
        [](const SceneRequest&) { return make_caustic_scene(); }},
       {"fog", "", "the Cornell Box filled with a homogeneous medium",
        [](const SceneRequest&) { return make_fog_scene(); }},
-      {"cloud", "N:T:A[:sparse]",
+      {"cloud", "N:T:A[:sparse[:P]]",
        "a cumulus on a grid of N^3 voxels (128), of optical depth T (10) and albedo A (0.999); "
-       "sparse: several, which fill 2 % of it",
+       "sparse: several, which fill P (2) % of it",
        [](const SceneRequest& request) {
          const CloudSettings settings = parse_cloud(request.name);
          if (!settings.is_sparse) check_cloud_memory(request, settings.side);

@@ -75,14 +75,18 @@ struct Cloudlet {
   double radius;  ///< it has no part farther away
 };
 
-/// At random places, where they fade out within the cube.
-std::vector<Cloudlet> cloudlets_of(std::uint32_t side) {
+/// At random places, where they fade out within the cube. So many that they fill `percent` of it,
+/// if each 16 fill 2 % of what is left.
+std::vector<Cloudlet> cloudlets_of(std::uint32_t side, float percent) {
+  const double sixteens = std::log1p(-0.01 * static_cast<double>(percent)) / std::log1p(-0.02);
+  const auto count = static_cast<std::size_t>(std::max(1.0, std::round(16 * sixteens)));
   std::vector<Cloudlet> all;
   std::uint32_t draw = 0;
   const auto uniform = [&] {
     return 2 * static_cast<double>(to_unit_float(combine_hash(cloud_seed, draw++))) - 1;
   };
-  for (const double radius : cloudlet_radii) {
+  while (all.size() < count) {
+    const double radius = cloudlet_radii[all.size() % std::size(cloudlet_radii)];
     const double x = uniform(), y = uniform(), z = uniform();
     all.push_back({(1 - 12.0 / side - radius) * glm::dvec3(x, y, z), radius});
   }
@@ -134,16 +138,21 @@ struct CloudBrick {
 
 }  // namespace
 
-VolumeData generate_sparse_cloud(std::uint32_t side) {
+VolumeData generate_sparse_cloud(std::uint32_t side, float percent) {
   const double voxel = 2.0 / side;
-  const auto cloudlets = cloudlets_of(side);
+  const auto cloudlets = cloudlets_of(side, percent);
   const std::uint32_t bricks = (side + 7) / 8;
   std::vector<std::vector<CloudBrick>> slabs(bricks);
   tbb::parallel_for(std::uint32_t{0}, bricks, [&](std::uint32_t i) {
+    std::vector<Cloudlet> near;
+    std::ranges::copy_if(cloudlets, std::back_inserter(near), [&](const Cloudlet& cloudlet) {
+      return std::abs((8 * i + 4) * voxel - 1 - cloudlet.middle.x) < cloudlet.radius + 8 * voxel;
+    });
+    if (near.empty()) return;
     for (std::uint32_t n = 0; n < bricks * bricks; ++n) {
       CloudBrick brick{8 * glm::ivec3(i, n / bricks, n % bricks), {}};
       const glm::dvec3 p = voxel * (glm::dvec3(brick.place) + 0.5) - 1.0;
-      for (const Cloudlet& cloudlet : cloudlets) {
+      for (const Cloudlet& cloudlet : near) {
         const double away = glm::length(p + 3.5 * voxel - cloudlet.middle);
         if (away < cloudlet.radius + 8 * voxel) brick.lattice.add(cloudlet, p, voxel);
       }
@@ -166,13 +175,18 @@ VolumeData generate_sparse_cloud(std::uint32_t side) {
   return volume;
 }
 
+bool is_sparse_cloud(std::string_view name) {
+  return name.starts_with("cloud:") &&
+         (name.ends_with(":sparse") || name.find(":sparse:") != std::string_view::npos);
+}
+
 CloudSettings parse_cloud(const SceneName& scene) {
   CloudSettings settings;
   if (scene.parameter.empty()) return settings;
   std::string_view rest = scene.parameter;
   const bool has_depth = rest.find(':') != std::string_view::npos;
   const std::string_view side = next_part(rest);
-  settings.is_sparse = scene.parameter.ends_with(":sparse");
+  settings.is_sparse = is_sparse_cloud(scene.full);
   const std::uint32_t least = settings.is_sparse ? sparse_side_least : 2,
                       most = settings.is_sparse ? sparse_side_most : cloud_side_most;
   if (!read_part(side, least, most, settings.side)) {
@@ -187,8 +201,14 @@ CloudSettings parse_cloud(const SceneName& scene) {
   }
   if (!has_albedo) return settings;
   const std::string_view albedo = settings.is_sparse ? next_part(rest) : rest;
+  const bool has_fill = settings.is_sparse && rest.find(':') != std::string_view::npos;
   if (!read_part(albedo, 0.0f, 1.0f, settings.albedo)) {
     refuse_part(scene, 'A', albedo, "an albedo from 0 to 1", "cloud:N:T:A");
+  }
+  next_part(rest);  // "sparse"
+  if (has_fill && !read_part(rest, 0.1f, 50.0f, settings.percent)) {
+    refuse_part(scene, 'P', rest, "a share of the cube from 0.1 to 50 percent",
+                "cloud:N:T:A:sparse:P");
   }
   return settings;
 }
@@ -214,15 +234,15 @@ VolumeData generate_cloud(std::uint32_t side) {
 
 SceneData make_cloud_scene(const CloudSettings& settings, VolumeStorage storage) {
   SceneData scene;
-  VolumeData volume =
-      settings.is_sparse ? generate_sparse_cloud(settings.side) : generate_cloud(settings.side);
+  VolumeData volume = settings.is_sparse ? generate_sparse_cloud(settings.side, settings.percent)
+                                         : generate_cloud(settings.side);
   const double densest = densest_column(volume) * 2.0 / settings.side;
   Medium cloud;
   cloud.extinction = Color(static_cast<float>(settings.optical_depth / densest));
   cloud.albedo = Color(settings.albedo);
   cloud.phase = phase_kind_of<HenyeyGreenstein>;
   cloud.phase_parameter = static_cast<float>(mean_cosine);
-  if (settings.is_sparse && storage == VolumeStorage::dense) volume = dense_copy(volume);
+  if (settings.is_sparse) volume = stored_as(storage, std::move(volume));
   cloud.density_grid = add_grid(scene, std::move(volume));
   scene.media.push_back(cloud);
   MaterialDescription boundary;

@@ -57,20 +57,25 @@ struct CloudSettings {
   float optical_depth = 10;  ///< T > 0: of the densest column of voxels along z
   float albedo = 0.999f;     ///< A in [0, 1]
   bool is_sparse = false;    ///< several clouds with much space between them
+  float percent = 2.0f;      ///< P: what these fill of the cube
 };
 inline constexpr std::uint32_t cloud_side_most = 1024;
 inline constexpr std::uint32_t sparse_side_least = 64, sparse_side_most = 4096;
 
-/// Reads cloud:N:T:A, of which the last parts may be left out. Throws Error that names the part.
+/// Whether it is cloud:N:T:A:sparse or :sparse:P.
+bool is_sparse_cloud(std::string_view name);
+
+/// Reads cloud:N:T:A or cloud:N:T:A:sparse:P, of which the last parts may be left out. Throws Error
+/// that names the part.
 CloudSettings parse_cloud(const SceneName& scene);
 
 /// Densities in [0, 1] in the cube [-1, 1]^3; the same bits for any number of threads. The shape
 /// does not depend on the side, but for the finest octaves, which a coarse grid cannot show.
 VolumeData generate_cloud(std::uint32_t side);
 
-/// Clouds of several sizes in the same cube, of which they fill 2 %, as a sparse grid. The same
-/// bits for any number of threads. Throws Error in a program without NanoVDB.
-VolumeData generate_sparse_cloud(std::uint32_t side);
+/// Clouds of several sizes in the same cube, of which they fill so many percent, as a sparse grid.
+/// The same bits for any number of threads. Throws Error in a program without NanoVDB.
+VolumeData generate_sparse_cloud(std::uint32_t side, float percent = 2.0f);
 
 /// The cloud above a ground, under a blue sky and a sun. Its phase function is Henyey and
 /// Greenstein's with a mean cosine of 0.8.

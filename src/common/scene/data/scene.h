@@ -63,25 +63,34 @@ struct Scene {
 /// SceneTraits as a type, with the integrator. (A value as template argument, new in C++20, is
 /// refused by nvcc's host pass.)
 template <Accel accel_value, Geometry geometry_value, Lighting lighting_value,
-          bool has_masks_value = false, bool has_media_value = false>
+          bool has_masks_value = false, bool has_media_value = false, bool has_sparse_value = false>
 struct Traits {
   static constexpr Accel accel = accel_value;
   static constexpr Geometry geometry = geometry_value;
   static constexpr Lighting lighting = lighting_value;
-  static constexpr bool has_masks = has_masks_value;  ///< triangles that are there in part
-  static constexpr bool has_media = has_media_value;  ///< between surfaces; with has_masks alone
+  static constexpr bool has_masks = has_masks_value;    ///< triangles that are there in part
+  static constexpr bool has_media = has_media_value;    ///< between surfaces; with has_masks alone
+  static constexpr bool has_sparse = has_sparse_value;  ///< see sample_grid(); with has_media alone
   static constexpr bool has_lights = lighting != Lighting::sky;
   static constexpr bool has_instances = geometry == Geometry::mixed;
   /// The BSDFs that a kernel shades.
   using BsdfList = std::conditional_t<lighting == Lighting::full, Bsdfs, PaperBsdfs>;
-  static constexpr SceneTraits value() { return {accel, geometry, lighting, has_masks, has_media}; }
+  static constexpr SceneTraits value() {
+    return {accel, geometry, lighting, has_masks, has_media, has_sparse};
+  }
 };
 
-/// What shading depends on: scenes that differ in their structure or in masks share its kernels.
+/// What shading depends on: scenes that differ in their structure, in masks or in how grids are
+/// stored share its kernels.
 template <class T>
 using ShadingTraits = Traits<Accel::brute, T::geometry, T::lighting, false, T::has_media>;
 
-/// The same of scenes that have triangles and nothing else.
+/// The same at collisions in media, where grids are looked up.
+template <class T>
+using CollisionTraits =
+    Traits<Accel::brute, T::geometry, T::lighting, false, T::has_media, T::has_sparse>;
+
+/// As ShadingTraits of scenes that have triangles and nothing else.
 template <class T>
 using TrianglesAlone = std::conditional_t<
     T::geometry == Geometry::mixed,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "common/error/error.h"
@@ -108,12 +109,11 @@ std::uint32_t add_grid(SceneData& scene, VolumeData volume) {
   };
   if (volume.is_sparse()) {
     grid.root = static_cast<std::uint32_t>(scene.grid_nodes.size()) + volume.root;
-    std::copy(std::begin(volume.low), std::end(volume.low), std::begin(grid.low));
-    grid.value_count = static_cast<std::uint32_t>(volume.colors.size());
+    const SparseHead head{{volume.low[0], volume.low[1], volume.low[2]}};
+    std::memcpy(&volume.nodes[volume.root - 1], &head, sizeof head);
     append(scene.grid_nodes, std::move(volume.nodes));
     append(scene.grid_values, std::move(volume.colors));
   } else {
-    grid.value_count = static_cast<std::uint32_t>(volume.values.size());
     append(scene.grid_values, std::move(volume.values));
   }
   scene.grids.push_back(grid);

@@ -19,8 +19,9 @@ struct VolumeData {
   // A sparse grid has a tree instead of values (medium/sparse_tree_nanovdb.h). Its outermost voxels
   // are 0.
   std::vector<SparseBlock> nodes;
-  std::uint32_t root = 0;     ///< index of the block where the tree's root begins, not 0
-  std::int32_t low[3] = {};   ///< the tree's coordinates of voxel (0, 0, 0)
+  std::uint32_t root = 0;    ///< index of the block where the tree's root begins; that before it is
+                             ///< for its SparseHead
+  std::int32_t low[3] = {};  ///< the tree's coordinates of voxel (0, 0, 0)
   std::vector<float> colors;  ///< of a sparse grid of 3 channels, the first of what is empty
 
   bool is_sparse() const { return !nodes.empty(); }

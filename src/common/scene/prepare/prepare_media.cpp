@@ -39,7 +39,8 @@ struct CellRange {
 /// The majorants of a sparse grid: those that it would have if it were dense.
 class SparseMajorants {
  public:
-  SparseMajorants(const VolumeGrid& grid, float* majorants) : grid_(grid), majorants_(majorants) {
+  SparseMajorants(const VolumeGrid& grid, const SparseHead& head, float* majorants)
+      : grid_(grid), head_(head), majorants_(majorants) {
     for (int axis = 0; axis < 3; ++axis) {
       cells_of_[axis].assign(grid.size[axis], {grid.cells[axis], 0});
       for (std::uint32_t cell = 0; cell < grid.cells[axis]; ++cell) {
@@ -75,7 +76,7 @@ class SparseMajorants {
   /// same cells.
   template <class Function>
   void for_runs(const SparseBrick& brick, int axis, Function&& function) const {
-    const int low = brick.low[axis] - grid_.low[axis];
+    const int low = brick.low[axis] - head_.low[axis];
     const int last = std::min(brick.side, static_cast<int>(grid_.size[axis]) - low);
     const auto cells = [&](int i) { return cells_of_[axis][static_cast<std::size_t>(low + i)]; };
     for (int begin = std::max(0, -low); begin < last;) {
@@ -101,6 +102,7 @@ class SparseMajorants {
   }
 
   const VolumeGrid& grid_;
+  const SparseHead& head_;
   float* majorants_;
   std::vector<CellRange> cells_of_[3];  ///< by voxel
 };
@@ -109,9 +111,10 @@ void bound_sparse(SceneData& scene, VolumeGrid& grid) {
   grid.ends = 1;
   scene.majorants.resize(scene.majorants.size() +
                          std::size_t{grid.cells[0]} * grid.cells[1] * grid.cells[2]);
-  const SparseMajorants majorants(grid, &scene.majorants[grid.first_cell]);
-  for_each_brick(&scene.grid_nodes[grid.root],
-                 [&](const SparseBrick& brick) { majorants.add(brick); });
+  const SparseBlock* const root = &scene.grid_nodes[grid.root];
+  const SparseMajorants majorants(grid, *reinterpret_cast<const SparseHead*>(root - 1),
+                                  &scene.majorants[grid.first_cell]);
+  for_each_brick(root, [&](const SparseBrick& brick) { majorants.add(brick); });
 }
 
 void bound(SceneData& scene, VolumeGrid& grid) {
@@ -140,6 +143,31 @@ void bound(SceneData& scene, VolumeGrid& grid) {
           }
         }
         scene.majorants.push_back(largest);
+      }
+    }
+  }
+}
+
+/// Writes into empty cells how far the next one is that is not: -d, see VolumeGrids. One more than
+/// the nearest of a cell's neighbours: two sweeps find d (Rosenfeld and Pfaltz 1968, 'Distance
+/// functions on digital pictures').
+void measure_empty_space(const VolumeGrid& grid, float* majorants) {
+  constexpr float without_end = 1 << 20;
+  const int nx = static_cast<int>(grid.cells[0]), ny = static_cast<int>(grid.cells[1]),
+            nz = static_cast<int>(grid.cells[2]), count = nx * ny * nz;
+  const auto distance = [](float majorant) { return majorant > 0 ? 0.0f : -majorant; };
+  std::replace(majorants, majorants + count, 0.0f, -without_end);
+  for (const int way : {1, -1}) {
+    for (int n = 0; n < count; ++n) {
+      const int cell = way > 0 ? n : count - 1 - n;
+      if (majorants[cell] > 0) continue;
+      const int x = cell % nx, y = cell / nx % ny, z = cell / nx / ny;
+      for (int neighbor = 0; neighbor < 13; ++neighbor) {  // those before it on the way
+        const int i = x + way * (neighbor % 3 - 1), j = y + way * (neighbor / 3 % 3 - 1),
+                  k = z + way * (neighbor / 9 - 1);
+        if (i < 0 || j < 0 || k < 0 || i >= nx || j >= ny || k >= nz) continue;
+        const float farther = distance(majorants[i + nx * (j + ny * k)]) + 1;
+        majorants[cell] = std::max(majorants[cell], -farther);
       }
     }
   }
@@ -190,7 +218,10 @@ void prepare_media(SceneData& scene) {
   for (const Medium& medium : scene.media) {
     if (medium.is_homogeneous()) continue;
     VolumeGrid& grid = scene.grids[medium.density_grid];
-    if (grid.cells[0] == 0) bound(scene, grid);  // several media may have it
+    if (grid.cells[0] > 0) continue;  // several media may have it
+    bound(scene, grid);
+    if (scene.grid_nodes.empty()) continue;
+    measure_empty_space(grid, &scene.majorants[grid.first_cell]);
   }
 }
 

@@ -58,6 +58,7 @@ SceneProperties properties_of(const SceneData& scene) {
   properties.has_masks =
       is_limited(scene.camera) || std::ranges::any_of(scene.materials, is_masked);
   properties.has_media = needs_media(scene);
+  properties.has_sparse = properties.has_media && !scene.grid_nodes.empty();
   properties.has_open_boundaries =
       scene.media_overlap ||
       std::ranges::any_of(scene.materials, [](const auto& m) { return m.passes; });

@@ -255,6 +255,10 @@ TEST_F(NanovdbFile, NodesElsewhereAreRefused) {
                  "a node outside of its grid");
   expect_refused(UnpackedNanovdb(file).put(file.grid + 672 + 24, std::uint64_t{1} << 40).bytes,
                  "a node outside of its grid");
+  for (const std::int64_t root : {-672, -640, 0, 32}) {
+    expect_refused(UnpackedNanovdb(file).put(file.grid + 672 + 24, root).bytes,
+                   "damaged: a root in its grid's head");
+  }
   // All of the upper node's entries become the same child.
   UnpackedNanovdb cyclic = file;
   const std::size_t first = file.first_child(file.upper, 32768), table = file.upper + 8256;

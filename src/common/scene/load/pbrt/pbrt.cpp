@@ -44,8 +44,10 @@ void balance_medium(SceneData& scene, const Balance& balance, Medium& medium) {
     return balance(medium.emission);
   }
   const VolumeGrid& grid = scene.grids[medium.emission_grid];
-  for (std::size_t i = 0; i < grid.value_count / 3; ++i) {
-    float* const values = &scene.grid_values[grid.first + 3 * i];
+  const std::size_t end =
+      &grid == &scene.grids.back() ? scene.grid_values.size() : (&grid)[1].first;
+  for (std::size_t first = grid.first; first < end; first += 3) {
+    float* const values = &scene.grid_values[first];
     Color color(values[0], values[1], values[2]);
     balance(color);
     for (int c = 0; c < 3; ++c) values[c] = color[c];

@@ -141,6 +141,7 @@ class TreeWalk {
     const auto& tree = bytes_.at<nanovdb::TreeData<3>>(tree_at);
     const std::uint64_t root_at = tree_at + tree.mNodeOffset[3];
     const Root& root = bytes_.at<Root>(root_at);
+    if (root_at < tree_at + sizeof(tree)) throw Error("damaged: a root in its grid's head");
     const std::uint64_t tiles_at = root_at + sizeof(Root);
     const std::uint64_t tiles_size = std::uint64_t{root.mTableSize} * sizeof(RootTile);
     bytes_.at<RootTile>(tiles_at, tiles_size);
