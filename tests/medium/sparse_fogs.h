@@ -4,6 +4,7 @@
 #include "cloud_modes.h"
 #include "common/scene/load/files/volumes/volume_files.h"
 #include "load/nanovdb_bytes.h"
+#include "medium/filled_glasses.h"
 
 namespace pt {
 
@@ -47,6 +48,18 @@ inline SceneData sparse_fogs(VolumeStorage storage) {
   add_floor_and_lights(scene);
   scene.sky = {Color(0.2f), {0.5f, 0.6f, 0.9f}};
   scene.camera = {{0.3f, 0.8f, 4.8f}, {0, 0.2f, 0}, {0, 1, 0}, 45.0f, 0.0f, 4.0f};
+  return scene;
+}
+
+/// Glasses of triangles, one of them filled with a fog: boundaries that all have a BSDF, among
+/// media with dense grids.
+inline SceneData sparse_glasses(VolumeStorage storage) {
+  SceneData scene = filled_glasses();
+  scene.name = "sparse glasses";
+  VolumeData density = read_nanovdb(nanovdb_path("balls_fp8.nvdb"), {}, storage);
+  density.to_world = fog_to({-1.2f, 0, 0}) * density.to_world;
+  scene.media[0].density_grid = add_grid(scene, std::move(density));
+  scene.media[0].extinction = Color(6, 4, 12);
   return scene;
 }
 

@@ -3,8 +3,10 @@
 
 #include <set>
 
+#include "common/error/error.h"
 #include "common/medium/free_flight.h"
 #include "common/scene/builtin/generated_scenes.h"
+#include "common/scene/builtin/scene_name.h"
 #include "common/scene/prepare/prepare_steps.h"
 #include "sparse_fogs.h"
 
@@ -97,6 +99,18 @@ TEST_F(SparseGrids, GiveTheSameImagesInAllModes) {
   }
 }
 
+// Here shadow rays end at the first surface, and blocks of rays are traced together.
+TEST_F(SparseGrids, GiveTheSameImagesInGlass) {
+  const SceneData sparse = sparse_glasses(VolumeStorage::sparse);
+  const Rendered expected =
+      render_clouds(sparse_glasses(VolumeStorage::dense), cloud_options("serial"));
+  for (const Options& options : {cloud_options("serial"), cloud_options("wavefront"),
+                                 cloud_options("wavefront", {{"accel", "bvh2"}})}) {
+    SCOPED_TRACE(command_of(options));
+    expect_same(render_clouds(sparse, options), expected);
+  }
+}
+
 TEST_F(SparseGrids, AreCopiedAsTheUserWants) {
   const VolumeData sparse = read_nanovdb(nanovdb_path("tile.nvdb"), {}, VolumeStorage::sparse);
   const VolumeData dense = read_nanovdb(nanovdb_path("tile.nvdb"));  // for it is small
@@ -165,6 +179,25 @@ TEST_F(SparseGrids, CloudsFillLittleOfTheirCube) {
   EXPECT_TRUE(has_empty_rim(dense.size, 1, dense.values.data()));
   EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(dense.values, 0.0f)) + active,
             dense.values.size());
+}
+
+TEST_F(SparseGrids, CloudsFillAsMuchAsIsWanted) {
+  for (const float percent : {0.5f, 10.0f, 40.0f}) {
+    const VolumeData dense = dense_copy(generate_sparse_cloud(128, percent));
+    const auto active = static_cast<double>(dense.values.size()) -
+                        static_cast<double>(std::ranges::count(dense.values, 0.0f));
+    const double share = 100 * active / static_cast<double>(dense.values.size());
+    EXPECT_NEAR(share, static_cast<double>(percent), 0.4 * static_cast<double>(percent));
+  }
+  const CloudSettings settings = parse_cloud(parse_scene_name("cloud:256:3:0.5:sparse:12.5"));
+  EXPECT_TRUE(settings.is_sparse && settings.side == 256 && settings.albedo == 0.5f);
+  EXPECT_EQ(settings.percent, 12.5f);
+  EXPECT_EQ(parse_cloud(parse_scene_name("cloud:256:3:0.5:sparse")).percent, 2.0f);
+  EXPECT_FALSE(is_sparse_cloud("cloud:256:3:0.5"));
+  for (const char* name : {"cloud:256:3:0.5:sparse:0", "cloud:256:3:0.5:sparse:51",
+                           "cloud:256:3:0.5:sparse:2:1", "cloud:9999:3:0.5:sparse"}) {
+    EXPECT_THROW(parse_cloud(parse_scene_name(name)), Error) << name;
+  }
 }
 
 TEST_F(SparseGrids, CloudsAreTheSameAsDenseOnes) {

@@ -1,6 +1,7 @@
 // Sparse grids on a GPU: the bits of dense ones.
 #include <gtest/gtest.h>
 
+#include "common/error/error.h"
 #include "common/scene/builtin/generated_scenes.h"
 #include "cuda_test.h"
 #include "sparse_fogs.h"
@@ -33,6 +34,34 @@ TEST_F(CudaSparseGrids, GiveTheImagesOfDenseOnesInAllModes) {
         gpu_options("wavefront", {{"schedule", "host"}, {"persistent", "off"}})}) {
     SCOPED_TRACE(command_of(options));
     expect_same(render_clouds(sparse, options), expected);
+  }
+}
+
+// The dense one is traced by persistent warps, and its last paths by blocks.
+TEST_F(CudaSparseGrids, GiveTheImagesOfDenseOnesInGlass) {
+  const Rendered expected =
+      render_clouds(sparse_glasses(VolumeStorage::dense), gpu_options("wavefront"));
+  const SceneData sparse = sparse_glasses(VolumeStorage::sparse);
+  for (const Options& options :
+       {gpu_options("megakernel"), gpu_options("wavefront"),
+        gpu_options("wavefront", {{"compaction", "cub"}, {"wave-collisions", "3"}})}) {
+    SCOPED_TRACE(command_of(options));
+    expect_same(render_clouds(sparse, options), expected);
+  }
+  EXPECT_THROW(render_clouds(sparse, gpu_options("wavefront", {{"accel", "cwbvh"}})), Error);
+}
+
+// The first hits look through media, too.
+TEST_F(CudaSparseGrids, GiveTheFeaturesOfDenseOnes) {
+  const auto image = [](VolumeStorage storage) {
+    return render_clouds(
+        sparse_fogs(storage),
+        gpu_options("megakernel", {{"aov", "depth,collision,transmittance"}, {"output", "a.exr"}}));
+  };
+  const Rendered dense = image(VolumeStorage::dense), sparse = image(VolumeStorage::sparse);
+  ASSERT_EQ(dense.image.layers.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(sparse.image.layers.at(i).values, dense.image.layers[i].values) << i;
   }
 }
 
