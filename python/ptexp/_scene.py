@@ -101,7 +101,7 @@ def load(scene: PathLike, **options: "Unpack[LoadOptions]") -> Scene:
         scene: a file (Mitsuba .xml, .gltf, .glb, .obj, .ply) or the name of a built-in scene, with
             its parameter: ``"spheres"``, ``"terrain:100000"``; see :func:`scenes`.
         **options: those of :func:`render`, for all renders of the scene, and ``define={...}``,
-            ``strict=True``, ``spheres=N``, which say what is read.
+            ``strict=True``, ``time=T``, ``spheres=N``, which say what is read.
 
     Returns:
         The scene. ``scene.render()`` renders it.

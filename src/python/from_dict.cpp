@@ -93,6 +93,7 @@ VolumeData grid_of(const nb::handle& array) {
 /// The options of loading among those of a render.
 LoadOptions load_options_of(const Words& words, WarningLimit& limit) {
   const Options options = command_of(words).options;
+  if (options.time) throw Error("--time: applies to .gltf and .glb files, which ptexp.load reads");
   return {options.definitions,      options.strict, limit.function(), {},
           options.default_lighting, options.camera, options.volume};
 }

@@ -67,6 +67,8 @@ const std::map<std::string, std::string>& other_values() {
       {"strict", "on"},
       {"default-lighting", "off"},
       {"volume", "dense"},
+      {"time", "-0.25"},
+      {"animation", "Run 2"},
       {"scene-from-disk", "on"},
       {"checkpoint", "c.exr,20.5"},
       {"part", "3/16"},
@@ -116,6 +118,7 @@ std::vector<std::string> arguments_for(const OptionEntry& entry, const std::stri
   if (entry.group == OptionGroup::metropolis) {
     arguments.insert(arguments.end(), {"--integrator", "mlt"});
   }
+  if (entry.name == "animation") arguments.insert(arguments.end(), {"--time", "1"});
   if (entry.name == "part") arguments.insert(arguments.end(), {"--checkpoint", "c.exr"});
   if (entry.name == "wave-rays") arguments.insert(arguments.end(), {"--stages", "fused"});
   if (entry.name == "work" || entry.name == "block" || entry.name == "kernel")
@@ -225,6 +228,8 @@ TEST(CommandLine, OptionsThatDetermineTheImage) {
                                           "scene",
                                           "define",
                                           "default-lighting",
+                                          "time",
+                                          "animation",
                                           "spheres",
                                           "create-world",
                                           "look-from",

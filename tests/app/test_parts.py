@@ -2,6 +2,7 @@
 
 The environment variable PTEXP names the executable. Images are compared bit by bit.
 """
+import base64
 import json
 import os
 import random
@@ -260,6 +261,49 @@ class Checkpoints(Parts):
             self.render(*scene, "--spp", 5, "--part", f"{part}/2", "--checkpoint", f"p{part}.exr")
         self.render("merge", "m.exr", "p1.exr", "p2.exr")
         self.assert_same_image("m.exr", "right.exr")
+
+    def write_moving_triangle(self, name, **node):
+        """A .gltf whose node is at (0, 0, 0) at 1 s and at (2, 0, -1) at 3 s."""
+        data = struct.pack("<17f", 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 3, 0, 0, 0, 2, 0, -1)
+        views = [(0, 36, 3, "VEC3"), (36, 8, 2, "SCALAR"), (44, 24, 2, "VEC3")]
+        (self.folder / name).write_text(json.dumps({
+            "asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1]}],
+            "nodes": [{"mesh": 0, **node}, {"camera": 0, "translation": [0, 0, 5]}],
+            "cameras": [{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+                            "samplers": [{"input": 1, "output": 2}]}],
+            "accessors": [{"bufferView": i, "componentType": 5126, "count": count, "type": kind}
+                          for i, (_, _, count, kind) in enumerate(views)],
+            "bufferViews": [{"buffer": 0, "byteOffset": at, "byteLength": size} for at, size, _, _ in views],
+            "buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64," +
+                         base64.b64encode(data).decode()}]}))
+
+    def test_a_time_belongs_to_the_scene(self):
+        self.write_moving_triangle("moving.gltf")
+        self.write_moving_triangle("moved.gltf", translation=[1.5, 0, -0.75])
+        moving = [*SMALL, "--scene", "moving.gltf", "--default-lighting", "on"]
+        self.render(*SMALL, "--scene", "moved.gltf", "--default-lighting", "on", "--spp", 6, "-o", "right.exr")
+        self.render(*moving, "--time", 2.5, "--spp", 6, "-o", "a.exr")
+        self.assert_same_image("a.exr", "right.exr")
+        self.render(*moving, "--spp", 6, "-o", "still.exr")
+        self.assertNotEqual(self.run_ptexp("compare", "still.exr", "right.exr").returncode, 0)
+        self.assertEqual(self.header("a.exr")["ptexp.option.time"], "2.5")
+        self.assertNotIn("ptexp.option.time", self.header("still.exr"))
+        self.render(*moving, "--time", 2.5, "--animation", 0, "--spp", 2, "--checkpoint", "c.exr")
+        self.assertIn("--time 2: c.exr was begun with 2.5", self.refused("resume", "c.exr", "--time", 2))
+        self.assertIn("--animation 1: c.exr was begun with 0", self.refused("resume", "c.exr", "--animation", 1))
+        self.render("resume", "c.exr", "--spp", 6, "--time", "2.50", "-o", "b.exr")
+        self.assert_same_image("b.exr", "right.exr")
+        for part, at in ((1, 1), (2, 1.5)):
+            self.render(*moving, "--time", at, "--spp", 1, "--part", f"{part}/2", "--checkpoint", f"p{part}.exr")
+        self.assertIn("--time 1.5, but p1.exr has 1;", self.refused("merge", "m.exr", "p1.exr", "p2.exr"))
+        for arguments, text in ((["--time", "soon"], "--time soon: expected a number of seconds"),
+                                (["--time", "nan"], "--time nan: expected a number of seconds"),
+                                (["--animation", 0], "--animation 0: has no effect without --time"),
+                                (["--time", 1, "--animation", "Run"], "--animation Run: expected name or number")):
+            self.assertIn(text, self.refused(*moving, *arguments))
+        self.assertIn("--time: is for scene files; 'cornell' is", self.refused(*SMALL, "--scene", "cornell", "--time", 1))
 
     def test_no_input_is_replaced(self):
         for part in (1, 2):

@@ -314,7 +314,43 @@ def gltf():
     glb = (b"glTF" + struct.pack("<II", 2, 28 + len(chunk) + len(vertices)) +
            struct.pack("<I", len(chunk)) + b"JSON" + chunk +
            struct.pack("<I", len(vertices)) + b"BIN\0" + vertices)
-    return text, glb
+    return text, glb, animated_gltf()
+
+
+def animated_gltf():
+    """A skinned triangle with a morph target, all of which is animated in each way."""
+    parts = {  # name: (components, type, numbers)
+        "positions": ("f", "VEC3", (0, 0, 0, 1, 0, 0, 0, 1, 0)), "target": ("f", "VEC3", (0, 0, 1) * 3),
+        "joints": ("B", "VEC4", (0, 1, 0, 0) * 3), "weights": ("f", "VEC4", (0.5, 0.5, 0, 0) * 3),
+        "inverse": ("f", "MAT4", (1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1) * 2), "keys": ("f", "SCALAR", (0, 1)),
+        "turns": ("b", "VEC4", (0, 0, 0, 127, 0, 0, 127, 0)), "moves": ("f", "VEC3", (0, 1, 2) * 6),
+        "morphs": ("f", "SCALAR", (0, 1)), "sizes": ("f", "VEC3", (1, 1, 1, 2, 2, 2))}
+    data, views, accessors, number = b"", [], [], {}
+    for name, (code, kind, values) in parts.items():
+        packed = struct.pack(f"<{len(values)}{code}", *values)
+        width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}[kind]
+        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": len(packed)})
+        accessors.append({"bufferView": len(number), "componentType": {"f": 5126, "B": 5121, "b": 5120}[code],
+                          "count": len(values) // width, "type": kind, "normalized": code == "b"})
+        number[name] = len(number)
+        data += packed
+    channels = [("rotation", 1, "turns", "LINEAR"), ("translation", 2, "moves", "CUBICSPLINE"),
+                ("scale", 1, "sizes", "STEP"), ("weights", 0, "morphs", "LINEAR")]
+    return json.dumps({
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1]}],
+        "nodes": [{"mesh": 0, "skin": 0}, {"children": [2]}, {"weights": []}],
+        "skins": [{"joints": [1, 2], "inverseBindMatrices": number["inverse"]}],
+        "meshes": [{"weights": [1], "primitives": [{
+            "attributes": {"POSITION": number["positions"], "JOINTS_0": number["joints"], "WEIGHTS_0": number["weights"]},
+            "targets": [{"POSITION": number["target"]}]}]}],
+        "animations": [{"name": "all",
+                        "channels": [{"sampler": i, "target": {"node": node, "path": path}}
+                                     for i, (path, node, _, _) in enumerate(channels)],
+                        "samplers": [{"input": number["keys"], "output": number[output], "interpolation": how}
+                                     for _, _, output, how in channels]}],
+        "accessors": accessors, "bufferViews": views,
+        "buffers": [{"byteLength": len(data),
+                     "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}]}).encode()
 
 
 def nvdb():

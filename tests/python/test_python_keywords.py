@@ -29,7 +29,7 @@ RIGHT = """
 from pathlib import Path
 import ptexp
 
-scene = ptexp.load(Path("a.xml"), width=32, define={"a": 1, "b": "x"}, strict=True)
+scene = ptexp.load(Path("a.xml"), width=32, define={"a": 1, "b": "x"}, strict=True, time=0.5, animation=1)
 image: ptexp.Image = ptexp.render(scene, spp=4, mode="wavefront", crop=(0, 0, 4, 4), nee=False, pool_size="64K",
                                   look_from=(0, 1, 2.5), aov="depth", aperture=0, exposure="auto", rr=None, progress=True)
 scene.render(filter=("gaussian", 0.5), stage_block={"shadow": 64}, output=Path("a.png"), device="cuda", quiet=False,

@@ -237,6 +237,24 @@ void add_scene(std::vector<OptionEntry>& list) {
       .add(choice("volume", &Options::volume),
            "How sparse grids lie in memory: the same image. auto: sparse\n"
            "where that takes less than half of more than 64 MiB")
+      .add(value(
+               "time", OptionForm::number, "SECONDS", &Options::time,
+               [](const std::string& name, const std::string& s) {
+                 return parse_number(name, s, "a number of seconds", [](float) { return true; });
+               },
+               [](const std::optional<float>& x) { return x ? number_text(*x) : ""; }),
+           "Evaluates the animations of a .gltf or .glb at this time:\n"
+           "nodes, morph targets and skins are as they are then. By\n"
+           "default animations are ignored")
+      .add(value(
+               "animation", OptionForm::number, "N|NAME", &Options::animation,
+               [](const std::string& name, const std::string& s) {
+                 if (s.empty()) refuse_value(name, s, "expected a number or a name");
+                 return s;
+               },
+               [](const std::string& x) { return x; }),
+           "With --time: only this animation, by its name or number. By\n"
+           "default all, but for those that move what one before moves")
       .add(flag("scene-from-disk", &Options::scene_from_disk),
            "In an MPI job each rank reads the scene's files; by default the\n"
            "first one does, and sends them to the others")

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "app/terminal/warning_limit.h"
 #include "common/device/cpu/cpu_renderer.h"
@@ -47,18 +48,23 @@ SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& 
                                                       {},
                                                       options.default_lighting,
                                                       options.camera,
-                                                      options.volume});
+                                                      options.volume,
+                                                      options.time,
+                                                      options.animation});
     scene.source_hash = files.hash(std::filesystem::path(options.scene).parent_path());
     for (const auto& path : files.paths()) scene.source_files.push_back(path.string());
     return scene;
   }
-  if (options.strict || !options.definitions.empty()) {
-    throw Error(fmt::format("--{}: is for scene files; '{}' is a built-in scene",
-                            options.strict ? "strict" : "define", options.scene));
+  const std::pair<bool, const char*> of_files[] = {
+      {options.strict, "strict"},
+      {!options.definitions.empty(), "define"},
+      {options.default_lighting != DefaultLighting::automatic, "default-lighting"},
+      {options.time.has_value(), "time"}};
+  for (const auto& [is_given, name] : of_files) {
+    if (is_given)
+      throw Error(
+          fmt::format("--{}: is for scene files; '{}' is a built-in scene", name, options.scene));
   }
-  if (options.default_lighting != DefaultLighting::automatic)
-    throw Error(fmt::format("--default-lighting: is for scene files; '{}' is a built-in scene",
-                            options.scene));
   if (options.volume != VolumeStorage::automatic && !is_sparse_cloud(options.scene))
     throw Error(fmt::format("--volume: is for scene files and cloud:N:T:A:sparse, not for '{}'",
                             options.scene));

@@ -132,10 +132,9 @@ struct Loaded {
   SceneData scene;
 
   explicit Loaded(const std::string& content, bool strict = false,
-                  const std::string& name = "scene.gltf") {
+                  const std::string& name = "scene.gltf", LoadOptions options = {}) {
     TempFolder folder;
     write_text(folder.file(name), content);
-    LoadOptions options;
     options.strict = strict;
     options.warn = [this](const std::string& message) { messages.push_back(message); };
     scene = load_gltf(folder.file(name), options);
@@ -150,5 +149,14 @@ struct Loaded {
         [&](const std::string& message) { return message.find(part) != std::string::npos; }));
   }
 };
+
+/// The file with its animations at a time.
+inline Loaded at_time(const GltfMaker& maker, float time, const std::string& animation = "",
+                      bool strict = false) {
+  LoadOptions options;
+  options.time = time;
+  options.animation = animation;
+  return Loaded(maker.gltf(), strict, "scene.gltf", options);
+}
 
 }  // namespace pt

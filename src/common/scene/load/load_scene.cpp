@@ -78,7 +78,13 @@ SceneData load_scene_file(const std::filesystem::path& path, const LoadOptions& 
   const std::string ending = lower_case(path.extension().string());
   std::string known;
   for (const Format& format : formats) {
-    if (ending == format.ending) return format.load(path, options);
+    if (ending == format.ending) {
+      if (options.time && format.load != load_gltf) {
+        throw Error(fmt::format("{}: --time {}: has no effect; it applies to .gltf and .glb",
+                                path.string(), *options.time));
+      }
+      return format.load(path, options);
+    }
     known += fmt::format("{}{}", known.empty() ? "" : ", ", format.ending);
   }
   throw Error(fmt::format("{}: unknown kind of scene file '{}'; expected one of {}", path.string(),

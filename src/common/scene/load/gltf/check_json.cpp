@@ -162,6 +162,8 @@ struct Filler {
     }
   }
 
+  void fill_animation(Json& animation) const;
+
   void fill_light(Json& light) const {
     ensure(light, "type", "");
     if (light["type"] == "spot") ensure(light, "spot", Json::object());
@@ -173,6 +175,21 @@ Json& objects_of(Json& root, const char* key) {
   thread_local Json none;
   none = Json::array();
   return root.is_object() && root.contains(key) ? root[key] : none;
+}
+
+void Filler::fill_animation(Json& animation) const {
+  for (Json& channel : objects_of(animation, "channels")) {
+    ensure(channel, "sampler", no_object);
+    if (!channel.contains("target") || !channel["target"].is_object()) {
+      channel["target"] = Json::object();
+      mended.changed = true;
+    }
+    ensure(channel["target"], "node", no_object);
+    ensure(channel["target"], "path", "");
+  }
+  for (Json& sampler : objects_of(animation, "samplers")) {
+    for (const char* key : {"input", "output"}) ensure(sampler, key, no_object);
+  }
 }
 
 /// Its content, and not the type that the URI names, says how a picture is decoded.
@@ -321,6 +338,7 @@ Mended check_json(Json& root, const std::string& file) {
   drop_empty_primitives(root, mended);
   const Filler filler{mended};
   for (Json& camera : objects_of(root, "cameras")) filler.fill_camera(camera);
+  for (Json& animation : objects_of(root, "animations")) filler.fill_animation(animation);
   if (root.contains("extensions") && root["extensions"].contains("KHR_lights_punctual")) {
     for (Json& light : objects_of(root["extensions"]["KHR_lights_punctual"], "lights")) {
       filler.fill_light(light);

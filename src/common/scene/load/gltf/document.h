@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -59,7 +60,7 @@ class File {
   File(std::string name, tinygltf::Model objects, const LoadOptions& load_options)
       : model(std::move(objects)), name_(std::move(name)), options_(load_options) {}
 
-  const tinygltf::Model model;
+  tinygltf::Model model;  ///< only pose_nodes changes it
   /// Zeros read so far for accessors without a bufferView: a file of a few bytes must not fill the
   /// memory.
   mutable std::size_t zeros = 0;

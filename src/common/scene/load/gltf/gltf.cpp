@@ -26,9 +26,6 @@ void report_ignored(File& file) {
       file.report("extensionsUsed", "{:.80} is ignored", name);
     }
   }
-  if (!file.model.animations.empty()) {
-    file.report("animations", "animations are ignored: everything is as its nodes place it");
-  }
 }
 
 /// A mesh in a shape of its own: with the weights of its morph targets, which a node may set, and
@@ -171,6 +168,7 @@ SceneData load_gltf(const std::filesystem::path& path, const LoadOptions& option
   File file(path.string(), std::move(read.model), options);
   for (const std::string& warning : read.warnings) file.report("", warning);
   report_ignored(file);
+  pose_nodes(file, options);
   SceneData scene;
   scene.name = path.filename().string();
   const std::vector<PlacedNode> nodes = place_nodes(file);

@@ -94,6 +94,8 @@ const std::map<std::string, unsigned, std::less<>> forms = {
     {"weights", numbers},
     // words
     {"alphaMode", string},
+    {"interpolation", string},
+    {"path", string},
     {"doubleSided", boolean},
     {"mimeType", string},
     {"name", string},
@@ -198,7 +200,8 @@ std::string expected_form(const std::string& key, const Json& value) {
 bool may_be_lost(const std::string& key) {
   const auto form = forms.find(key);
   if (key == "normalized") return false;
-  return key == "alphaMode" || key == "mimeType" || key == "name" ||
+  return key == "alphaMode" || key == "mimeType" || key == "name" || key == "interpolation" ||
+         key == "path" ||
          (form != forms.end() && (form->second & ~unsigned{number | numbers | boolean}) == 0);
 }
 

@@ -8,15 +8,6 @@
 namespace pt::gltf {
 namespace {
 
-std::vector<Vec3> read_vec3s(const File& file, int accessor, const std::string& place) {
-  const std::vector<float> values = read_floats(file, accessor, 3, place);
-  std::vector<Vec3> result(values.size() / 3);
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    result[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-  }
-  return result;
-}
-
 bool is_finite(const Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -31,21 +22,42 @@ void check_count(const File& file, std::size_t count, const Mesh& mesh, const st
   }
 }
 
-/// Adds what the morph targets move an attribute by. Targets without a weight have 0.
-void add_morphs(const File& file, const tinygltf::Primitive& primitive,
-                const std::vector<double>& weights, const char* attribute, const std::string& place,
-                std::vector<Vec3>& values) {
+/// What a primitive is made of, with the weights of its morph targets; those without one have 0.
+struct Source {
+  const tinygltf::Primitive& primitive;
+  const std::vector<double>& weights;
+  std::string place;
+};
+
+/// An attribute, moved by the morph targets.
+std::vector<float> read_attribute(const File& file, const Source& source, const std::string& name,
+                                  int components) {
+  const auto& [primitive, weights, place] = source;
+  std::vector<float> values =
+      read_floats(file, primitive.attributes.at(name), components, attribute_place(place, name));
   for (std::size_t i = 0; i < primitive.targets.size() && i < weights.size(); ++i) {
-    const auto found = primitive.targets[i].find(attribute);
+    const auto found = primitive.targets[i].find(name);
     const auto weight = static_cast<float>(weights[i]);
     if (found == primitive.targets[i].end() || weight == 0.0f) continue;
-    const std::string target_place = fmt::format("{}.targets[{}].{}", place, i, attribute);
-    const std::vector<Vec3> moves = read_vec3s(file, found->second, target_place);
+    const std::string target_place = fmt::format("{}.targets[{}].{}", place, i, name);
+    const std::vector<float> moves = read_floats(file, found->second, components, target_place);
     if (moves.size() != values.size()) {
-      file.fail(target_place, "{} elements, but {} has {}", moves.size(), attribute, values.size());
+      const auto width = static_cast<std::size_t>(components);
+      file.fail(target_place, "{} elements, but {} has {}", moves.size() / width, name,
+                values.size() / width);
     }
     for (std::size_t v = 0; v < values.size(); ++v) values[v] += weight * moves[v];
   }
+  return values;
+}
+
+std::vector<Vec3> read_vec3s(const File& file, const Source& source, const std::string& name) {
+  const std::vector<float> values = read_attribute(file, source, name, 3);
+  std::vector<Vec3> result(values.size() / 3);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    result[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+  }
+  return result;
 }
 
 void unitize_normals(File& file, const std::string& place, Mesh& mesh) {
@@ -61,10 +73,10 @@ void unitize_normals(File& file, const std::string& place, Mesh& mesh) {
 }
 
 /// glTF's v goes down from the image's head, Mesh's goes up from its foot.
-std::vector<Vec2> read_uvs(const File& file, int accessor, const std::string& place,
+std::vector<Vec2> read_uvs(const File& file, const Source& source, const std::string& name,
                            const Mesh& mesh) {
-  const std::vector<float> values = read_floats(file, accessor, 2, place);
-  check_count(file, values.size() / 2, mesh, place);
+  const std::vector<float> values = read_attribute(file, source, name, 2);
+  check_count(file, values.size() / 2, mesh, attribute_place(source.place, name));
   std::vector<Vec2> uvs(values.size() / 2);
   for (std::size_t i = 0; i < uvs.size(); ++i) {
     const float u = values[2 * i], v = values[2 * i + 1];
@@ -112,10 +124,12 @@ Influences read_influences(const File& file, const tinygltf::Primitive& primitiv
 }
 
 /// RGB or RGBA, linear.
-void read_colors(File& file, int accessor, const std::string& place, Mesh& mesh) {
-  const auto& source = file.at(file.model.accessors, accessor, "accessors", place);
-  const int components = source.type == TINYGLTF_TYPE_VEC4 ? 4 : 3;
-  const std::vector<float> values = read_floats(file, accessor, components, place);
+void read_colors(File& file, const Source& source, Mesh& mesh) {
+  const std::string name = "COLOR_0", place = attribute_place(source.place, name);
+  const auto& accessor =
+      file.at(file.model.accessors, source.primitive.attributes.at(name), "accessors", place);
+  const int components = accessor.type == TINYGLTF_TYPE_VEC4 ? 4 : 3;
+  const std::vector<float> values = read_attribute(file, source, name, components);
   const auto width = static_cast<std::size_t>(components);
   check_count(file, values.size() / width, mesh, place);
   mesh.colors.resize(values.size() / width);
@@ -213,36 +227,30 @@ bool has_positions(File& file, const tinygltf::Primitive& primitive, const std::
   return false;
 }
 
-void read_uv_sets(const File& file, const tinygltf::Primitive& primitive, const std::string& place,
-                  PrimitiveMesh& result) {
-  for (const auto& [name, accessor] : primitive.attributes) {
+void read_uv_sets(const File& file, const Source& source, PrimitiveMesh& result) {
+  for (const auto& [name, accessor] : source.primitive.attributes) {
     constexpr std::string_view prefix = "TEXCOORD_";
     if (!name.starts_with(prefix) || name.size() != prefix.size() + 1) continue;
     const int set = name.back() - '0';
     if (set < 0 || set > 9) continue;
-    result.uv_sets[set] = read_uvs(file, accessor, attribute_place(place, name), result.mesh);
+    result.uv_sets[set] = read_uvs(file, source, name, result.mesh);
   }
 }
 
-PrimitiveMesh read_primitive(File& file, const tinygltf::Primitive& primitive,
-                             const std::vector<double>& weights, const std::string& place) {
+PrimitiveMesh read_primitive(File& file, const Source& source) {
   PrimitiveMesh result;
+  const auto& [primitive, weights, place] = source;
   if (!has_positions(file, primitive, place)) return result;
   Mesh& mesh = result.mesh;
-  const auto& attributes = primitive.attributes;
-  mesh.positions = read_vec3s(file, attributes.at("POSITION"), attribute_place(place, "POSITION"));
-  add_morphs(file, primitive, weights, "POSITION", place, mesh.positions);
-  if (const auto normals = attributes.find("NORMAL"); normals != attributes.end()) {
+  mesh.positions = read_vec3s(file, source, "POSITION");
+  if (primitive.attributes.contains("NORMAL")) {
     const std::string normals_place = attribute_place(place, "NORMAL");
-    mesh.normals = read_vec3s(file, normals->second, normals_place);
+    mesh.normals = read_vec3s(file, source, "NORMAL");
     check_count(file, mesh.normals.size(), mesh, normals_place);
-    add_morphs(file, primitive, weights, "NORMAL", place, mesh.normals);
     unitize_normals(file, normals_place, mesh);
   }
-  read_uv_sets(file, primitive, place, result);
-  if (const auto colors = attributes.find("COLOR_0"); colors != attributes.end()) {
-    read_colors(file, colors->second, attribute_place(place, "COLOR_0"), mesh);
-  }
+  read_uv_sets(file, source, result);
+  if (primitive.attributes.contains("COLOR_0")) read_colors(file, source, mesh);
   result.influences = read_influences(file, primitive, mesh, place);
   mesh.triangles =
       make_triangles(file, primitive.mode, vertex_sequence(file, primitive, mesh, place), place);
@@ -267,7 +275,7 @@ std::vector<PrimitiveMesh> read_primitives(File& file, int mesh,
       file.report(place, "points and lines are ignored");
       continue;
     }
-    PrimitiveMesh read = read_primitive(file, primitives[i], weights, place);
+    PrimitiveMesh read = read_primitive(file, {primitives[i], weights, place});
     if (read.mesh.triangles.empty()) continue;
     const int material = primitives[i].material;
     if (material >= 0 && file.has(file.model.materials, material, "materials", place + ".material",

@@ -1,4 +1,5 @@
-// The hierarchy of nodes: where everything is, cameras and lights (KHR_lights_punctual).
+// The hierarchy of nodes: animations, where everything is, cameras and lights
+// (KHR_lights_punctual).
 #pragma once
 
 #include <vector>
@@ -17,6 +18,12 @@ struct PlacedNode {
 
 /// "nodes[7]"
 std::string node_place(int node);
+
+/// Evaluates the animations that the options choose, at their time: translation, rotation, scale
+/// and weights of the file's nodes become what they are then. A channel that cannot be used is left
+/// out; so are, without a time, all of them. Both are reported. Throws Error for accessors that are
+/// malformed and for an animation that the file lacks.
+void pose_nodes(File& file, const LoadOptions& options);
 
 /// All nodes of the default scene, parents before their children, in the order of the file. A node
 /// that is its own ancestor or has two parents is placed once, a part of a transformation that

@@ -63,6 +63,9 @@ bool may_be_lost(const std::string& key);
 
 // Checks of a glTF file's JSON that must come before tinygltf reads it.
 
+/// Filled in where an animation does not say which object it means.
+inline constexpr int no_object = 0x7fffffff;
+
 /// What check_json took away or filled in.
 struct Mended {
   bool changed = false;
