@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "common/error/error.h"
+#include "wavefront/optix_code.h"
 #include "wavefront/wavefront.h"
 
 namespace pt {
@@ -23,6 +24,7 @@ WavefrontCuda::WavefrontCuda(const ExecutionPlan& plan, const SceneData& scene, 
     : CudaRenderer(plan, scene, device),
       has_masks_(scene.properties.has_masks),
       finish_paths_(plan_.finish_paths) {
+  make_optix();
   allocate_pool(scene);
   if (plan_.finishes_in_blocks) {
     const std::uint64_t most = std::min<std::uint64_t>(batch_paths(), finish_paths_);
@@ -38,6 +40,22 @@ WavefrontCuda::WavefrontCuda(const ExecutionPlan& plan, const SceneData& scene, 
 WavefrontCuda::~WavefrontCuda() {
   destroy_graph();
   cudaFreeHost(host_counters_);
+}
+
+void WavefrontCuda::make_optix() {
+  optix_.reset();  // its memory is needed
+  if (!plan_.traces_by_optix) return;
+  optix_memory_ = std::make_unique<CudaOptixMemory>(stream());
+  optix_ = std::make_unique<OptixTracer>(*optix_memory_, scene_, has_masks_, plan_.optix_hits,
+                                         optix_queue_code());
+}
+
+void WavefrontCuda::describe(RenderReport& report) const {
+  CudaRenderer::describe(report);
+  if (optix_ == nullptr) return;
+  report.accel = "optix";
+  report.optix = optix_->facts();
+  report.memory.push_back({"OptiX's structures", report.optix->bytes_compacted});
 }
 
 void WavefrontCuda::allocate_pool(const SceneData& scene) {
@@ -171,7 +189,9 @@ bool WavefrontCuda::set_camera(const Camera& camera) {
 
 bool WavefrontCuda::set_scene(const SceneData& scene, const SceneChanges& changes) {
   destroy_graph();
-  return CudaRenderer::set_scene(scene, changes);
+  if (!CudaRenderer::set_scene(scene, changes)) return false;
+  if (changes.move_surfaces()) make_optix();
+  return true;
 }
 
 // A graph whose only node is a WHILE loop; its body is a few waves, recorded from the stream.

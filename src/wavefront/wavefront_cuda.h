@@ -1,10 +1,12 @@
 // The wavefront's renderer on CUDA: the pool, the two ways to run the loop of waves.
 #pragma once
 
+#include "common/accel/trace_optix/optix_memory_cuda.h"
 #include "common/block_wavefront/block_wavefront_cuda.h"
 #include "common/device/cuda/cuda_renderer.cuh"
 #include "wavefront/compaction/compaction_cuda.h"
 #include "wavefront/loop.h"
+#include "wavefront/optix_tracer.h"
 #include "wavefront/pool/stage_bytes.h"
 
 namespace pt {
@@ -59,6 +61,7 @@ class WavefrontCuda : public CudaRenderer {
   void trace_batch(const SampleBuffer& batch) override;
   std::uint64_t take_wave_count() override;
   void predict_bytes(std::vector<LaunchCounters>& launches) const override;
+  void describe(RenderReport& report) const override;
 
  private:
   /// Calls function(kinds, context): a list of kinds of scenes that has this one, and what stages
@@ -75,6 +78,8 @@ class WavefrontCuda : public CudaRenderer {
   void enqueue_wave_of(const StageContext<Source>& context, bool starts_paths);
   template <class Kinds, class Source>
   void enqueue_finish_of(const StageContext<Source>& context);
+  /// Builds what OptiX needs, where it traces.
+  void make_optix();
   void allocate_pool(const SceneData& scene);
   /// Whether blocks follow the whole batch from its first rays, as few paths as it has.
   bool has_few_paths(const SampleBuffer& batch) const;
@@ -88,6 +93,8 @@ class WavefrontCuda : public CudaRenderer {
   WaveBuffers buffers_;
   std::uint32_t* all_slots_ = nullptr;  ///< 0, 1, 2, ...: the first queue of free slots
   std::unique_ptr<CudaCompactor> compactor_;
+  std::unique_ptr<CudaOptixMemory> optix_memory_;
+  std::unique_ptr<OptixTracer> optix_;       ///< null: our own warps trace
   std::unique_ptr<BlockWavefronts> blocks_;  ///< null: threads follow the last paths
   bool has_masks_ = false;                   ///< where media have kernels with masks in any case
   std::uint32_t finish_paths_ = 0;           ///< of the plan, as far as blocks have room for them

@@ -189,6 +189,8 @@ constexpr InertRule inert_rules[] = {
      "with --accel brute: there is no tree"},
     {"builder", [](const Options& o) { return o.accel == AccelKind::embree; },
      "with --accel embree: it builds its own tree"},
+    {"optix-hits", [](const Options& o) { return o.accel != AccelKind::optix; },
+     "without --accel optix"},
 };
 
 /// Scripts may give an option's default value in any case.

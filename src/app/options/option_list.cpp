@@ -313,7 +313,14 @@ void add_execution(std::vector<OptionEntry>& list) {
       .add(choice("accel", &Options::accel),
            "Acceleration structure: none (every primitive is tested), a\n"
            "binary BVH, a compressed 8-wide BVH (triangles only), or\n"
-           "Embree's (CPU, triangles only); auto: by scene and device")
+           "Embree's (CPU, triangles only); optix: NVIDIA's OptiX (CUDA,\n"
+           "wavefront); auto: by scene and device, never optix")
+      .add(choice("optix-hits", &Options::optix_hits),
+           "--accel optix: who decides what a ray hits. custom: OptiX\n"
+           "finds boxes, our test decides; any-hit: it finds triangles,\n"
+           "our test decides; built-in: OptiX decides, bits may differ")
+      .expert()
+      .only(wavefront, cuda)
       .add(choice("builder", &Options::builder),
            "Builder of BVHs over triangles: on the CPU binned SAH, also\n"
            "with reinsertion, SBVH, or the best of these by trial rays; on\n"

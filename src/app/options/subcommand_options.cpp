@@ -23,7 +23,8 @@ using S = const std::string&;
 
 AccelKind parse_accel(const std::string& text) {
   const auto accel = parse_name<AccelKind>("accel", text);
-  if (accel == AccelKind::embree) refuse_name("accel", text, {"auto", "brute", "bvh2", "cwbvh"});
+  if (accel == AccelKind::embree || accel == AccelKind::optix)
+    refuse_name("accel", text, {"auto", "brute", "bvh2", "cwbvh"});
   return accel;
 }
 

@@ -14,8 +14,8 @@ namespace pt {
   ACCEL(embree)
 
 #define PT_ACCEL_ENUMERATOR(name) name,
-/// The values of --accel.
-enum class AccelKind { automatic, PT_ACCELS(PT_ACCEL_ENUMERATOR) };
+/// The values of --accel. With `optix`, OptiX's structure stands beside a wide tree.
+enum class AccelKind { automatic, PT_ACCELS(PT_ACCEL_ENUMERATOR) optix };
 
 /// The acceleration structure that is traversed. Embree's is for the CPU; cwbvh_avx2 is the wide
 /// tree for processors with AVX2.
@@ -27,6 +27,7 @@ inline constexpr std::initializer_list<Accel> tree_accels = {Accel::bvh2, Accel:
 
 /// `kind` must not be AccelKind::automatic.
 constexpr Accel accel_of(AccelKind kind) {
+  if (kind == AccelKind::optix) return Accel::cwbvh;
   return static_cast<Accel>(static_cast<int>(kind) - static_cast<int>(AccelKind::brute));
 }
 constexpr AccelKind accel_kind_of(Accel accel) {

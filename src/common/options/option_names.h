@@ -96,9 +96,14 @@ inline constexpr auto enum_names<MisHeuristic> =
                                            {MisHeuristic::power, "power"}});
 #define PT_ACCEL_NAME(name) {AccelKind::name, #name},
 template <>
-inline constexpr auto enum_names<AccelKind> =
-    std::to_array<EnumName<AccelKind>>({{AccelKind::automatic, "auto"}, PT_ACCELS(PT_ACCEL_NAME)});
+inline constexpr auto enum_names<AccelKind> = std::to_array<EnumName<AccelKind>>(
+    {{AccelKind::automatic, "auto"}, PT_ACCELS(PT_ACCEL_NAME){AccelKind::optix, "optix"}});
 #undef PT_ACCEL_NAME
+template <>
+inline constexpr auto enum_names<OptixHits> =
+    std::to_array<EnumName<OptixHits>>({{OptixHits::custom, "custom"},
+                                        {OptixHits::any_hit, "any-hit"},
+                                        {OptixHits::built_in, "built-in"}});
 template <>
 inline constexpr auto enum_names<TreeBuilder> =
     std::to_array<EnumName<TreeBuilder>>({{TreeBuilder::automatic, "auto"},

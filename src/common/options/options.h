@@ -11,6 +11,7 @@
 
 #include "common/choices/accel.h"
 #include "common/choices/choices.h"
+#include "common/choices/optix_hits.h"
 #include "common/options/compaction_info.h"
 #include "common/options/stage_info.h"
 
@@ -151,6 +152,7 @@ struct ExecutionSettings {
   int threads = 0;  ///< CPU threads, 0: all
   DeviceLimits limits;
   TreeBuilder builder = TreeBuilder::automatic;  ///< builds trees over triangles
+  OptixHits optix_hits = OptixHits::custom;      ///< with AccelKind::optix
   Work work = Work::persistent;                  ///< megakernel
   BlockSize block;                               ///< megakernel, threads per block
   Branching branching = Branching::divergent;

@@ -140,6 +140,13 @@ struct ProcessTimes {
   double total() const { return start + devices + scene + prepare + setup + render + image; }
 };
 
+/// The structures that OptiX has built, with --accel optix.
+struct OptixFacts {
+  double build_ms = 0;  ///< wall time, with compaction
+  std::uint64_t bytes_built = 0, bytes_compacted = 0;
+  unsigned rtcore_version = 0;  ///< 0: the device has no RT cores, and traces by software
+};
+
 struct RenderReport {
   std::string device_name;     ///< e.g. "NVIDIA H200" or "CPU, 8 threads"
   std::string device_kind;     ///< "cpu" or "cuda"
@@ -154,6 +161,7 @@ struct RenderReport {
   std::uint32_t finish_paths = 0;  ///< of --finish-paths, as used; 0 in modes without a pool
   std::uint64_t primitives = 0;
   SceneFacts scene;
+  std::optional<OptixFacts> optix;
   double scene_ms = 0;     ///< loading and preparing the scene (host wall time)
   double setup_ms = 0;     ///< device initialisation and allocation
   double load_ms = 0;      ///< loading of kernels, before the first render; 0 on the CPU

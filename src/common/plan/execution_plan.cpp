@@ -8,6 +8,7 @@
 #include "common/accel/build/build_nodes.h"
 #include "common/accel/trace_cpu/ray_block.h"
 #include "common/accel/traverse_triangles.h"
+#include "common/error/error.h"
 #include "common/material/material.h"
 #include "common/options/option_names.h"
 #include "common/plan/plan_steps.h"
@@ -36,6 +37,7 @@ class Planner {
     choose_mode();
     if (is_on_gpu(Mode::megakernel)) choose_megakernel();
     choose_structure();
+    if (traces_by_optix()) choose_optix();
     if (has_nodes(accel_kind_of(plan_.accel)) && !is_specialized()) choose_builder();
     if (plan_.mode == Mode::wavefront) choose_stages();
     if (device_.is_cuda && is_specialized()) choose_scene_memory();
@@ -97,6 +99,7 @@ class Planner {
   std::pair<Mode, std::string> faster_mode() const {
     using enum Mode;
     if (o_.integrator == IntegratorKind::mlt) return {wavefront, "its slots follow chains"};
+    if (traces_by_optix()) return {wavefront, "OptiX traces its queues"};
     if (!device_.is_cuda) {
       return by_ratio({&C::megakernel_cpu}, "threads that follow paths alone were faster",
                       "the CPU takes rays and surfaces in blocks");
@@ -198,10 +201,28 @@ class Planner {
       std::tie(plan_.accel, plan_.why_accel) =
           is_specialized() ? automatic_scan() : automatic_tree();
     }
-    decide("accel", accel_name(plan_.accel), plan_.why_accel);
+    decide("accel", traces_by_optix() ? "optix" : accel_name(plan_.accel), plan_.why_accel);
     // Masks have no code by vectors.
     const bool by_vectors = !device_.is_cuda && device_.has_avx2 && !scene_.has_masked_kernels();
     plan_.traversal = plan_.accel == Accel::cwbvh && by_vectors ? Accel::cwbvh_avx2 : plan_.accel;
+  }
+
+  bool traces_by_optix() const { return o_.accel == AccelKind::optix; }
+
+  /// Its structure is built beside our tree, which the features of first hits still walk.
+  void choose_optix() {
+    check_optix(o_, scene_, device_, plan_);
+    if (!warps_can_persist() || plan_.accel != Accel::cwbvh)
+      throw Error(
+          fmt::format("--accel optix: scene '{}' has no kernel for it; OptiX traces what "
+                      "persistent warps can: triangles with masks or instances, media whose "
+                      "boundaries have a BSDF, --compaction atomic",
+                      scene_.name));
+    plan_.traces_by_optix = true;
+    decide("optix-hits", to_string(plan_.optix_hits),
+           plan_.optix_hits == OptixHits::built_in
+               ? "OptiX decides: hits may differ from our trees'"
+               : "our test decides: hits are our trees'");
   }
 
   /// The builder with which building and rendering end first. A tree is worth the more time the
@@ -324,9 +345,11 @@ class Planner {
     choose_finish();
     choose_pool();
     if (!device_.is_cuda) return;
-    plan_.uses_graph = o_.schedule != Schedule::host;
+    plan_.uses_graph = o_.schedule != Schedule::host && !plan_.traces_by_optix;
     decide("schedule", plan_.uses_graph ? "graph" : "host",
-           o_.schedule != Schedule::automatic ? asked : "no round trip to the host between waves");
+           o_.schedule != Schedule::automatic ? asked
+           : plan_.traces_by_optix            ? "a launch of OptiX is not recorded in a graph"
+                                              : "no round trip to the host between waves");
   }
 
   void choose_stages() {
@@ -350,9 +373,10 @@ class Planner {
     const bool can = warps_can_persist() && plan_.accel == Accel::cwbvh && !plan_.fused;
     plan_.persistent_warps = o_.persistent && can;
     decide("persistent", plan_.persistent_warps ? "on" : "off",
-           plan_.persistent_warps ? "triangles in a wide tree, appended queues"
-           : can                  ? asked
-                                  : "for wide trees of triangles and appended queues alone");
+           plan_.traces_by_optix    ? "whole queues of rays, by OptiX"
+           : plan_.persistent_warps ? "triangles in a wide tree, appended queues"
+           : can                    ? asked
+                                    : "for wide trees of triangles and appended queues alone");
   }
 
   void choose_surface_order() {
@@ -376,6 +400,8 @@ class Planner {
   /// scene and its kinds of BSDFs differ, the fewer paths are finished that way. Blocks sort
   /// theirs, and are faster than waves as long as they have room for all.
   void choose_finish() {
+    if (plan_.traces_by_optix)
+      return decide("finish-paths", "0", "only waves have their rays traced by OptiX");
     plan_.finishes_in_blocks = can_finish_in_blocks();
     if (o_.finish_paths) {
       plan_.finish_paths = *o_.finish_paths;
@@ -449,6 +475,7 @@ std::string why_general(const Options& o, const SceneProperties& scene) {
   if (o.mis != MisHeuristic::power) return "--mis " + to_string(o.mis);
   if (o.sampler != SamplerKind::independent) return "--sampler " + to_string(o.sampler);
   if (o.integrator == IntegratorKind::mlt) return "--integrator mlt";
+  if (o.accel == AccelKind::optix) return "--accel optix";
   return "";
 }
 

@@ -250,6 +250,28 @@ void check_options_for_scene(const Options& options, const SceneProperties& scen
   }
 }
 
+void check_optix(const Options& o, const SceneProperties& scene, const DeviceProperties& device,
+                 const ExecutionPlan& plan) {
+  const auto refuse = [](const std::string& option, const std::string& why) {
+    throw Error(fmt::format("--accel optix: {}; {}", why, option));
+  };
+  if (!device.is_cuda) refuse("expected --device cuda", "OptiX runs on NVIDIA's GPUs");
+  if (plan.mode != Mode::wavefront)
+    refuse("expected --mode wavefront, not " + to_string(plan.mode), "OptiX traces its queues");
+  if (scene.spheres > 0)
+    refuse(fmt::format("scene '{}' has {} spheres", scene.name, scene.spheres),
+           "only triangles and quads are traced by OptiX");
+  if (o.optix_hits == OptixHits::built_in && scene.has_masks)
+    refuse("expected --optix-hits custom or any-hit", "only our programs judge masks");
+  if (o.stages == Stages::fused) refuse("expected --stages split", "fused stages have no queue");
+  if (!o.persistent) refuse("expected --persistent on", "whole queues are traced");
+  if (o.schedule == Schedule::graph)
+    refuse("expected --schedule host", "a launch of OptiX is not recorded in a graph");
+  if (o.finish_paths.value_or(0) > 0)
+    refuse("expected --finish-paths 0", "only waves have their rays traced by OptiX");
+  if (o.counters) refuse("expected no --counters", "OptiX's kernels are not counted");
+}
+
 void check_plan(const ExecutionPlan& plan, const Options& options, const SceneProperties& scene,
                 const DeviceProperties& device) {
   check_builder(options.builder, accel_kind_of(plan.accel), device.is_cuda);

@@ -23,6 +23,10 @@ KernelNeed need_of(const ExecutionPlan& plan, const Options& options, const Scen
 void check_plan(const ExecutionPlan& plan, const Options& options, const SceneProperties& scene,
                 const DeviceProperties& device);
 
+/// What --accel optix cannot be had with. Throws Error.
+void check_optix(const Options& options, const SceneProperties& scene,
+                 const DeviceProperties& device, const ExecutionPlan& plan);
+
 /// How much there is to build and to trace.
 struct TreeWork {
   double triangles = 0;

@@ -1,0 +1,164 @@
+#include "common/accel/trace_optix/optix_pipeline.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "common/accel/trace_optix/optix_payload.h"
+#include "common/error/error.h"
+
+namespace pt {
+namespace {
+
+/// Calls function(log, &bytes) and gives what it wrote.
+template <class Function>
+void call_with_log(const OptixLibrary& library, const char* name, Function&& function) {
+  std::array<char, 4096> log{};
+  std::size_t bytes = log.size();
+  const optix::Result result = function(log.data(), &bytes);
+  log.back() = '\0';
+  library.check(result, name, log.data());
+}
+
+constexpr std::size_t record_bytes = optix::record_header_bytes;
+
+}  // namespace
+
+OptixPipeline::OptixPipeline(const OptixContext& context, OptixMemory& memory,
+                             const std::string& code, OptixHits hits, std::size_t params_bytes,
+                             bool has_instances)
+    : context_(context), memory_(memory), params_bytes_(params_bytes) {
+  if (code.empty())
+    throw Error("OptiX: ptexp was built without programs for it (PTEXP_OPTIX and PTEXP_CUDA)");
+  options_.graph_flags =
+      has_instances ? optix::graph_single_level_instancing : optix::graph_single_gas;
+  options_.payload_values = optix_payload_words;
+  options_.attribute_values = 2;  // the least
+  options_.exception_flags = optix::exception_none;
+  options_.params_name = "params";
+  options_.primitive_flags =
+      hits == OptixHits::custom ? optix::primitives_custom : optix::primitives_triangle;
+  try {
+    create_module(code);
+    create_groups(hits);
+    link(has_instances);
+    fill_records();
+    params_ = OptixBuffer(memory, params_bytes, "OptiX's parameters");
+  } catch (...) {
+    destroy();
+    throw;
+  }
+}
+
+OptixPipeline::~OptixPipeline() { destroy(); }
+
+void OptixPipeline::destroy() noexcept {
+  const optix::FunctionTable& call = context_.functions();
+  if (pipeline_ != nullptr) call.pipeline_destroy(pipeline_);
+  for (optix::ProgramGroup group : groups_)
+    if (group != nullptr) call.group_destroy(group);
+  if (module_ != nullptr) call.module_destroy(module_);
+}
+
+void OptixPipeline::create_module(const std::string& code) {
+  optix::ModuleOptions module{};
+  module.optimization_level = optix::optimization_level_default;
+  module.debug_level = optix::debug_level_none;
+  call_with_log(context_.library(), "optixModuleCreate", [&](char* log, std::size_t* bytes) {
+    return context_.functions().module_create(context_.get(), &module, &options_, code.c_str(),
+                                              code.size(), log, bytes, &module_);
+  });
+}
+
+void OptixPipeline::create_groups(OptixHits hits) {
+  std::array<optix::ProgramGroupDescription, group_count> all{};
+  for (optix::ProgramGroupDescription& group : all) group.kind = optix::group_kind_hitgroup;
+  all[0].kind = all[1].kind = optix::group_kind_raygen;
+  all[2].kind = optix::group_kind_miss;
+  const char* suffix = hits == OptixHits::custom    ? "custom"
+                       : hits == OptixHits::any_hit ? "any_hit"
+                                                    : "built_in";
+  const std::string raygens[] = {std::string("__raygen__closest_") + suffix,
+                                 std::string("__raygen__any_") + suffix};
+  for (int i = 0; i < launch_kinds; ++i) all[i].single = {module_, raygens[i].c_str()};
+  // No program for rays that miss: their payload says so.
+  optix::HitPrograms* hit[] = {&all[3].hit, &all[4].hit, &all[5].hit};
+  switch (hits) {
+    case OptixHits::custom:
+      hit[0]->intersection = hit[2]->intersection = {module_, "__intersection__closest"};
+      hit[1]->intersection = {module_, "__intersection__any"};
+      break;
+    case OptixHits::any_hit:
+      hit[0]->any = {module_, "__anyhit__closest"};
+      hit[1]->any = {module_, "__anyhit__any"};
+      hit[2]->any = {module_, "__anyhit__ties"};
+      break;
+    case OptixHits::built_in:
+      for (optix::HitPrograms* group : hit) group->closest = {module_, "__closesthit__name"};
+      break;
+  }
+  const optix::ProgramGroupOptions options{};
+  call_with_log(context_.library(), "optixProgramGroupCreate", [&](char* log, std::size_t* bytes) {
+    return context_.functions().group_create(context_.get(), all.data(), group_count, &options, log,
+                                             bytes, groups_);
+  });
+}
+
+void OptixPipeline::link(bool has_instances) {
+  const optix::FunctionTable& call = context_.functions();
+  const optix::LinkOptions options{1};
+  call_with_log(context_.library(), "optixPipelineCreate", [&](char* log, std::size_t* bytes) {
+    return call.pipeline_create(context_.get(), &options_, &options, groups_, group_count, log,
+                                bytes, &pipeline_);
+  });
+  optix::StackSizes most{};
+  for (optix::ProgramGroup group : groups_) {
+    optix::StackSizes size{};
+    context_.library().check(call.group_stack_size(group, &size, pipeline_),
+                             "optixProgramGroupGetStackSize");
+    const auto raise = [&](unsigned optix::StackSizes::*member) {
+      most.*member = std::max(most.*member, size.*member);
+    };
+    raise(&optix::StackSizes::continuation_raygen);
+    raise(&optix::StackSizes::continuation_miss);
+    raise(&optix::StackSizes::continuation_closest);
+    raise(&optix::StackSizes::continuation_any);
+    raise(&optix::StackSizes::continuation_intersection);
+  }
+  // A trace of depth 1: the ray generation's frame, and one of the programs that it meets.
+  const unsigned continuation =
+      most.continuation_raygen + std::max({most.continuation_closest, most.continuation_miss,
+                                           most.continuation_any + most.continuation_intersection});
+  context_.library().check(
+      call.pipeline_stack_size(pipeline_, 0, 0, continuation, has_instances ? 2 : 1),
+      "optixPipelineSetStackSize");
+}
+
+void OptixPipeline::fill_records() {
+  std::vector<char> headers(group_count * record_bytes);
+  for (int i = 0; i < group_count; ++i) {
+    context_.library().check(
+        context_.functions().record_header(groups_[i], headers.data() + i * record_bytes),
+        "optixSbtRecordPackHeader");
+  }
+  records_ = OptixBuffer(memory_, headers.size(), "OptiX's records");
+  memory_.to_device(records_.get(), headers.data(), headers.size());
+}
+
+void OptixPipeline::launch(Launch kind, const void* params, std::uint32_t width) {
+  if (width == 0) return;
+  memory_.enqueue_to_device(params_.get(), params, params_bytes_);
+  const auto record = [&](std::size_t i) { return records_.address() + i * record_bytes; };
+  optix::BindingTable table{};
+  table.raygen = record(kind);
+  table.miss = record(launch_kinds);
+  table.miss_stride = record_bytes, table.miss_count = 1;
+  table.hit = record(launch_kinds + 1);
+  table.hit_stride = record_bytes, table.hit_count = hit_kinds;
+  context_.library().check(
+      context_.functions().launch(pipeline_, memory_.stream(), params_.address(), params_bytes_,
+                                  &table, width, 1, 1),
+      "optixLaunch");
+}
+
+}  // namespace pt

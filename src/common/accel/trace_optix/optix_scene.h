@@ -1,0 +1,45 @@
+// What OptiX's programs know of a scene, and how far a traversal looks; for host and device.
+#pragma once
+
+#include "common/accel/trace_optix/optix_abi.h"
+#include "common/accel/triangle_query.h"
+
+namespace pt {
+
+struct OptixScene {
+  TriangleTree tree;
+  optix::TraversableHandle handle = 0;
+  float cull_margin = 0;  ///< OptixStructure::cull_margin
+};
+
+/// The interval of boxes that OptiX must visit for hits with t_min < t < t_max: our bounds on where
+/// a ray enters and leaves the box of a triangle that is met (docs/design/tracing.md), with much to
+/// spare for OptiX's own rounding.
+inline constexpr float optix_tolerance = 128.0f * half_ulp;
+
+PT_HD float optix_cull_margin(const OptixScene& scene, const Ray& ray) {
+  return scene.cull_margin / max_abs(ray.direction);
+}
+PT_HD float optix_t_max(float t_max, float margin) {
+  return min_number(t_max * (1.0f + optix_tolerance) + margin, infinite_distance);
+}
+PT_HD float optix_t_min(float t_min, float margin) {
+  return max_number(t_min * (1.0f - optix_tolerance) - margin, 0.0f);
+}
+
+/// Offers the triangle that OptiX names to the query; true: there is no need to look any further.
+template <class Query>
+PT_HD bool offer_candidate(const TriangleTree& tree, const Ray& ray, std::uint32_t primitive,
+                           std::uint32_t instance, Query& query) {
+  if (tree.instance_count == 0) {
+    return offer_slots(tree, make_triangle_ray(ray.origin, ray.direction), primitive, 1, query);
+  }
+  const InstanceRecord record = load_wide(&tree.instances[instance]);
+  const InstanceVisit visit =
+      visit_instance(record, ray, make_slab_test_ray(ray), query.t_min(), query.t_max());
+  if (visit.is_empty) return false;
+  return offer_slots(tree, make_triangle_ray(visit.ray.origin, visit.ray.direction),
+                     record.first_slot + primitive, 1, visit, instance, query);
+}
+
+}  // namespace pt

@@ -1,0 +1,197 @@
+#include "common/accel/trace_optix/optix_structure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "common/error/error.h"
+
+namespace pt {
+namespace {
+
+// What rounding does to a ray on its way into an instance, of our transform and of OptiX's, in half
+// ulps of the sum of the terms' sizes.
+constexpr float transform_error = 32.0f * half_ulp;
+// Of the distance to a triangle that is met (hit_error_distance), twice and more for rays from
+// outside.
+constexpr float distance_error = 64.0f * half_ulp;
+
+float size_of(const Bounds& bounds) { return max_abs(bounds.max - bounds.min); }
+
+/// Upper bound on the coordinates, and on all terms of their sums, of points of the box in the
+/// instance's space.
+float size_inside(const Affine& to_object, const Bounds& world) {
+  const Vec3 most = glm::max(glm::abs(world.min), glm::abs(world.max));
+  float size = 0;
+  for (const Vec4& row : to_object.row) {
+    size = std::max(size, std::abs(row.x) * most.x + std::abs(row.y) * most.y +
+                              std::abs(row.z) * most.z + std::abs(row.w));
+  }
+  return size;
+}
+
+float norm_of(const Affine& transform) {
+  float norm = 0;
+  for (const Vec4& row : transform.row)
+    norm = std::max(norm, std::abs(row.x) + std::abs(row.y) + std::abs(row.z));
+  return norm;
+}
+
+Bounds bounds_of(const std::vector<InstanceRecord>& records) {
+  Bounds all = records.front().bounds;
+  for (const InstanceRecord& record : records)
+    all = {glm::min(all.min, record.bounds.min), glm::max(all.max, record.bounds.max)};
+  return all;
+}
+
+}  // namespace
+
+OptixStructure::OptixStructure(const OptixContext& context, OptixMemory& memory,
+                               const TriangleTree& tree, OptixHits hits)
+    : context_(context), memory_(memory) {
+  const auto begin = std::chrono::steady_clock::now();
+  if (tree.instance_count == 0) {
+    if (tree.triangle_count > 0) {
+      std::vector<Triangle> triangles(tree.triangle_count);
+      memory.to_host(triangles.data(), tree.triangles, triangles.size() * sizeof(Triangle));
+      Bounds all = hit_bounds(triangles[0].v0, triangles[0].v1, triangles[0].v2);
+      for (const Triangle& t : triangles) {
+        const Bounds box = triangle_bounds(t.v0, t.v1, t.v2);
+        all = {glm::min(all.min, box.min), glm::max(all.max, box.max)};
+      }
+      handle_ =
+          build_group(tree.triangles, tree.triangle_count, hits, {distance_error * size_of(all)});
+    }
+  } else {
+    std::vector<InstanceRecord> records(tree.instance_count);
+    memory.to_host(records.data(), tree.instances, records.size() * sizeof(InstanceRecord));
+    const Bounds world = bounds_of(records);
+    // In the order of the slots, so that a group is found by its first one.
+    std::vector<Group> groups;
+    for (const InstanceRecord& record : records)
+      groups.push_back({record.first_slot, record.slot_count, 0});
+    std::ranges::sort(groups, {}, &Group::first_slot);
+    const auto same = std::ranges::unique(groups, {}, &Group::first_slot);
+    groups.erase(same.begin(), same.end());
+    std::vector<float> margins(groups.size());
+    for (const InstanceRecord& record : records) {
+      const auto g = static_cast<std::size_t>(
+          std::ranges::lower_bound(groups, record.first_slot, {}, &Group::first_slot) -
+          groups.begin());
+      const float margin =
+          (transform_error + distance_error) * size_inside(record.to_object, world);
+      margins[g] = std::max(margins[g], margin);
+      cull_margin_ = std::max(cull_margin_, margin * norm_of(inverse(record.to_object)));
+    }
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      groups[g].handle = build_group(tree.triangles + groups[g].first_slot, groups[g].slot_count,
+                                     hits, {margins[g]});
+    }
+    handle_ = build_instances(records, groups);
+  }
+  build_ms_ =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+optix::TraversableHandle OptixStructure::build_group(const Triangle* triangles, std::uint32_t count,
+                                                     OptixHits hits, const OptixBoxMargin& margin) {
+  const unsigned most = context_.property(optix::property_max_primitives);
+  if (count > most) {
+    throw Error(fmt::format("--accel optix: a group has {} triangles; OptiX takes at most {}",
+                            count, most));
+  }
+  optix::BuildInput input{};
+  const unsigned flags = optix::geometry_none;
+  if (hits == OptixHits::custom) {
+    const OptixBuffer boxes(memory_, count * sizeof(optix::Box), "OptiX's boxes");
+    memory_.enqueue_boxes(static_cast<optix::Box*>(boxes.get()), triangles, count, margin);
+    const optix::DevicePointer address = boxes.address();
+    input.type = optix::input_custom;
+    input.boxes.boxes = &address;
+    input.boxes.count = count;
+    input.boxes.stride = sizeof(optix::Box);
+    input.boxes.flags = &flags;
+    input.boxes.record_count = 1;
+    return build(input);
+  }
+  static_assert(sizeof(Triangle) == 3 * 16);  // a vertex is the first 12 of 16 bytes
+  const auto address = reinterpret_cast<optix::DevicePointer>(triangles);
+  input.type = optix::input_triangles;
+  input.triangles.vertex_buffers = &address;
+  input.triangles.vertex_count = 3 * count;
+  input.triangles.vertex_format = optix::vertex_format_float3;
+  input.triangles.vertex_stride = 16;
+  input.triangles.index_format = optix::index_format_none;
+  input.triangles.flags = &flags;
+  input.triangles.record_count = 1;
+  return build(input);
+}
+
+optix::TraversableHandle OptixStructure::build_instances(const std::vector<InstanceRecord>& records,
+                                                         const std::vector<Group>& groups) {
+  const unsigned most = context_.property(optix::property_max_instances);
+  if (records.size() > most) {
+    throw Error(fmt::format("--accel optix: the scene has {} instances; OptiX takes at most {}",
+                            records.size(), most));
+  }
+  std::vector<optix::Instance> instances(records.size());
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    optix::Instance& instance = instances[i];
+    const Affine to_world = inverse(records[i].to_object);
+    static_assert(sizeof to_world.row == sizeof instance.to_world);
+    std::memcpy(instance.to_world, to_world.row, sizeof instance.to_world);
+    instance.id = static_cast<unsigned>(i);
+    instance.visibility = 0xff;
+    instance.group =
+        std::ranges::lower_bound(groups, records[i].first_slot, {}, &Group::first_slot)->handle;
+  }
+  const OptixBuffer device(memory_, instances.size() * sizeof(optix::Instance),
+                           "OptiX's instances");
+  memory_.to_device(device.get(), instances.data(), device.bytes());
+  optix::BuildInput input{};
+  input.type = optix::input_instances;
+  input.instances.instances = device.address();
+  input.instances.count = static_cast<unsigned>(instances.size());
+  return build(input);
+}
+
+/// Builds and compacts; what the input refers to is needed until then.
+optix::TraversableHandle OptixStructure::build(const optix::BuildInput& input) {
+  const optix::FunctionTable& call = context_.functions();
+  const OptixLibrary& library = context_.library();
+  optix::BuildOptions options{};
+  options.flags = optix::build_allow_compaction | optix::build_prefer_fast_trace;
+  options.operation = optix::build_operation_build;
+  optix::BufferSizes sizes{};
+  library.check(call.accel_memory(context_.get(), &options, &input, 1, &sizes),
+                "optixAccelComputeMemoryUsage");
+  OptixBuffer built(memory_, sizes.output, "OptiX's structure");
+  optix::TraversableHandle handle = 0;
+  std::uint64_t compacted_bytes = 0;
+  {
+    const OptixBuffer scratch(memory_, std::max<std::size_t>(sizes.scratch, 1),
+                              "OptiX's scratch memory");
+    const OptixBuffer size(memory_, sizeof compacted_bytes, "OptiX's sizes");
+    const optix::EmitDescription emit{size.address(), optix::emit_compacted_size};
+    library.check(
+        call.accel_build(context_.get(), memory_.stream(), &options, &input, 1, scratch.address(),
+                         sizes.scratch, built.address(), sizes.output, &handle, &emit, 1),
+        "optixAccelBuild");
+    memory_.to_host(&compacted_bytes, size.get(), sizeof compacted_bytes);
+  }
+  bytes_built_ += sizes.output;
+  if (compacted_bytes > 0 && compacted_bytes < sizes.output) {
+    OptixBuffer compacted(memory_, compacted_bytes, "OptiX's structure");
+    library.check(call.accel_compact(context_.get(), memory_.stream(), handle, compacted.address(),
+                                     compacted_bytes, &handle),
+                  "optixAccelCompact");
+    memory_.synchronize();
+    built = std::move(compacted);
+  }
+  bytes_ += built.bytes();
+  buffers_.push_back(std::move(built));
+  return handle;
+}
+
+}  // namespace pt

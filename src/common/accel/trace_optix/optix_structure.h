@@ -1,0 +1,51 @@
+// The structures that OptiX builds over a scene's triangles: one for each group, and one over the
+// instances.
+#pragma once
+
+#include <vector>
+
+#include "common/accel/trace_optix/optix_library.h"
+#include "common/accel/trace_optix/optix_memory.h"
+#include "common/accel/triangle_tree.h"
+#include "common/choices/optix_hits.h"
+
+namespace pt {
+
+class OptixStructure {
+ public:
+  /// Over the triangles of `tree`, in the device's memory; their slots are OptiX's numbers of
+  /// primitives, counted from the group's first one. `memory` must outlive the structure.
+  OptixStructure(const OptixContext& context, OptixMemory& memory, const TriangleTree& tree,
+                 OptixHits hits);
+
+  optix::TraversableHandle handle() const { return handle_; }
+  /// How much farther than the best hit one in an instance may seem to lie, for directions of
+  /// length 1.
+  float cull_margin() const { return cull_margin_; }
+  /// Wall time of building and compaction.
+  double build_ms() const { return build_ms_; }
+  std::size_t bytes_built() const { return bytes_built_; }
+  std::size_t bytes_compacted() const { return bytes_; }
+
+ private:
+  struct Group {
+    std::uint32_t first_slot, slot_count;
+    optix::TraversableHandle handle;
+  };
+
+  optix::TraversableHandle build_group(const Triangle* triangles, std::uint32_t count,
+                                       OptixHits hits, const OptixBoxMargin& margin);
+  optix::TraversableHandle build_instances(const std::vector<InstanceRecord>& records,
+                                           const std::vector<Group>& groups);
+  optix::TraversableHandle build(const optix::BuildInput& input);
+
+  const OptixContext& context_;
+  OptixMemory& memory_;
+  std::vector<OptixBuffer> buffers_;
+  optix::TraversableHandle handle_ = 0;
+  float cull_margin_ = 0;
+  double build_ms_ = 0;
+  std::size_t bytes_built_ = 0, bytes_ = 0;
+};
+
+}  // namespace pt

@@ -1,0 +1,11 @@
+// Built instead of optix_code.cpp where CMake makes no modules for OptiX (PTEXP_OPTIX).
+#include "wavefront/optix_code.h"
+
+namespace pt {
+
+const std::string& optix_queue_code() {
+  static const std::string none;
+  return none;
+}
+
+}  // namespace pt
