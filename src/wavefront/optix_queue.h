@@ -2,7 +2,7 @@
 // with.
 #pragma once
 
-#include "common/accel/trace_optix/optix_scene.h"
+#include "common/accel/trace_optix/optix_programs.h"
 #include "wavefront/wave_buffers.h"
 
 namespace pt {
@@ -17,24 +17,42 @@ struct OptixQueueParams {
   SampleBuffer samples;
 };
 
-/// Masks need more of a ray than its query: the key (transport/mask.h).
-template <class Query>
-class KeyedQuery : public Query {
+/// Not part of each program that judges: masks are rare, and their code is long.
+PT_NOINLINE inline bool judged_mask_hides(MaskView masks, std::uint32_t ray_key, Triangle triangle,
+                                          float b1, float b2) {
+  return passes_mask(masks, ray_key, triangle, b1, b2, [] { return 0u; });
+}
+
+/// A query that asks the scene's masks, by the key of the ray (transport/mask.h). Scenes with
+/// instances have none. Besides OptiX's functions `Api` has masks().
+template <class Api, class Query>
+class JudgingQuery : public Query {
  public:
-  PT_HD KeyedQuery(float t_min, float t_max, std::uint32_t key = 0)
+  static constexpr bool has_masks = true;
+
+  PT_HD JudgingQuery(float t_min, float t_max, std::uint32_t key = 0)
       : Query(t_min, t_max), key_(key) {}
-  PT_HD std::uint32_t key() const { return key_; }
+
+  PT_OPTIX_FUNCTION bool hides(const Triangle& triangle, const TriangleHit& hit, float t,
+                               std::uint32_t) const {
+    return is_up_to_mask(*this, triangle, t) &&
+           judged_mask_hides(Api::masks(), key_, triangle, hit.b1, hit.b2);
+  }
 
  private:
   std::uint32_t key_;
 };
+template <class Api>
+using ClosestJudge = JudgingQuery<Api, ClosestTriangle>;
+template <class Api>
+using AnyJudge = JudgingQuery<Api, AnyTriangle>;
 
 /// Any scene without masks has MaskedTraits' path hashes, and never asks for them.
 using OptixMaskTraits = Traits<Accel::cwbvh, Geometry::mixed, Lighting::sky, true>;
 
-/// The next ray of the path in the slot: trace(ray, query) gives its hit.
-template <class Query, class Trace>
-PT_HD void trace_queued_path(const OptixQueueParams& p, std::uint32_t slot, Trace&& trace) {
+/// The next ray of the path in the slot.
+template <class Api, OptixHits hits>
+PT_OPTIX_FUNCTION void trace_queued_path(const OptixQueueParams& p, std::uint32_t slot) {
   const Ray ray = p.pool.load_ray(slot);
   float t_max = infinite_distance;
   std::uint32_t key = 0;
@@ -44,20 +62,37 @@ PT_HD void trace_queued_path(const OptixQueueParams& p, std::uint32_t slot, Trac
                        path.rays);
     t_max = ray_length(p.world, ray.direction, key);
   }
-  p.pool.store_hit(slot, trace(ray, Query(0.0f, t_max, key)));
+  p.pool.store_hit(
+      slot, optix::trace_closest<Api, hits>(p.scene, ray, ClosestJudge<Api>(0.0f, t_max, key)));
 }
 
-/// Its shadow ray: trace(ray, query) says whether it is occluded.
-template <class Query, class Trace>
-PT_HD void trace_queued_shadow_ray(const OptixQueueParams& p, std::uint32_t slot, Trace&& trace) {
+template <class Api, OptixHits hits>
+PT_OPTIX_FUNCTION void trace_queued_shadow_ray(const OptixQueueParams& p, std::uint32_t slot) {
   std::uint32_t path_index, key = 0;
   const ShadowRay shadow = p.pool.load_shadow(slot, path_index);
   if (p.has_masks) {
     key = shadow_ray_key(p.world, path_hash<OptixMaskTraits>(p.world, p.samples.id_of(path_index)),
                          p.pool.load_shadow_rays(slot));
   }
-  if (!trace(shadow.ray, Query(0.0f, shadow.distance, key)))
+  const AnyJudge<Api> query(0.0f, shadow.distance, key);
+  if (!optix::trace_any<Api, hits>(p.scene, shadow.ray, query))
     add_radiance(p.samples, path_index, shadow.radiance);
+}
+
+// Ray generation.
+
+template <class Api, OptixHits hits>
+PT_OPTIX_FUNCTION void trace_queued_paths(const OptixQueueParams& p) {
+  const std::uint32_t count = *p.count;
+  for (std::uint32_t i = Api::launch_index(); i < count; i += Api::launch_width())
+    trace_queued_path<Api, hits>(p, p.slots[i]);
+}
+
+template <class Api, OptixHits hits>
+PT_OPTIX_FUNCTION void trace_queued_shadow_rays(const OptixQueueParams& p) {
+  const std::uint32_t count = *p.count;
+  for (std::uint32_t i = Api::launch_index(); i < count; i += Api::launch_width())
+    trace_queued_shadow_ray<Api, hits>(p, p.slots[i]);
 }
 
 }  // namespace pt

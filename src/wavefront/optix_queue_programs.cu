@@ -1,63 +1,35 @@
 // The queues of the wavefront: a module for OptiX, compiled to PTX alone.
-#include "common/accel/trace_optix/optix_programs.cuh"
-#include "common/accel/trace_optix/optix_rays.h"
+#include "common/accel/trace_optix/optix_intrinsics.cuh"
 #include "wavefront/optix_queue.h"
 
+/// Memory without a constructor, which a variable in constant memory cannot have.
+union OptixQueueMemory {
+  char none;
+  pt::OptixQueueParams queue;
+  constexpr __host__ __device__ OptixQueueMemory() : none(0) {}
+};
+
 extern "C" {
-__constant__ pt::OptixQueueParams params;
+__constant__ OptixQueueMemory params;
 }
 
 namespace pt {
 
-/// Asks the scene's masks; scenes with instances have none.
-template <class Query>
-struct JudgingQuery : KeyedQuery<Query> {
-  static constexpr bool has_masks = true;
-  using KeyedQuery<Query>::KeyedQuery;
-
-  __device__ __forceinline__ bool hides(const Triangle& triangle, const TriangleHit& hit, float t,
-                                        std::uint32_t) const {
-    return is_up_to_mask(*this, triangle, t) &&
-           passes_mask(MaskView(params.world), this->key(), triangle, hit.b1, hit.b2,
-                       [] { return 0u; });
-  }
+struct QueueApi : optix::DeviceApi {
+  static __device__ __forceinline__ MaskView masks() { return MaskView(params.queue.world); }
 };
-
-using ClosestQuery = JudgingQuery<ClosestTriangle>;
-using AnyQuery = JudgingQuery<AnyTriangle>;
-
-template <OptixHits hits>
-__device__ __forceinline__ void trace_paths() {
-  const std::uint32_t count = *params.count;
-  for (std::uint32_t i = optix::launch_index(); i < count; i += optix::launch_width()) {
-    trace_queued_path<ClosestQuery>(params, params.slots[i],
-                                    [](const Ray& ray, const ClosestQuery& query) {
-                                      return optix::trace_closest<hits>(params.scene, ray, query);
-                                    });
-  }
-}
-
-template <OptixHits hits>
-__device__ __forceinline__ void trace_shadow_rays() {
-  const std::uint32_t count = *params.count;
-  for (std::uint32_t i = optix::launch_index(); i < count; i += optix::launch_width()) {
-    trace_queued_shadow_ray<AnyQuery>(params, params.slots[i],
-                                      [](const Ray& ray, const AnyQuery& query) {
-                                        return optix::trace_any<hits>(params.scene, ray, query);
-                                      });
-  }
-}
 
 }  // namespace pt
 
-PT_OPTIX_HIT_PROGRAMS(pt::ClosestQuery, pt::AnyQuery)
+PT_OPTIX_HIT_PROGRAMS(pt::QueueApi, pt::ClosestJudge<pt::QueueApi>, pt::AnyJudge<pt::QueueApi>,
+                      params.queue.scene)
 
-#define PT_RAY_GENERATION(name)                           \
-  extern "C" __global__ void __raygen__closest_##name() { \
-    pt::trace_paths<pt::OptixHits::name>();               \
-  }                                                       \
-  extern "C" __global__ void __raygen__any_##name() {     \
-    pt::trace_shadow_rays<pt::OptixHits::name>();         \
+#define PT_RAY_GENERATION(name)                                                    \
+  extern "C" __global__ void __raygen__closest_##name() {                          \
+    pt::trace_queued_paths<pt::QueueApi, pt::OptixHits::name>(params.queue);       \
+  }                                                                                \
+  extern "C" __global__ void __raygen__any_##name() {                              \
+    pt::trace_queued_shadow_rays<pt::QueueApi, pt::OptixHits::name>(params.queue); \
   }
 
 PT_RAY_GENERATION(custom)

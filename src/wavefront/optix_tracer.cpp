@@ -16,14 +16,13 @@ OptixTracer::OptixTracer(OptixMemory& memory, const Scene& scene, bool has_masks
 
 void OptixTracer::launch(OptixPipeline::Launch kind, const Scene& scene, const PathPool& pool,
                          const StageQueues& queues, const SampleBuffer& samples) {
-  const OptixQueueParams params{
-      .scene = {scene.triangles, structure_.handle(), structure_.cull_margin()},
-      .world = scene,
-      .has_masks = has_masks_,
-      .pool = pool,
-      .slots = queues.slots,
-      .count = queues.count,
-      .samples = samples};
+  const OptixQueueParams params{.scene = optix_scene(scene.triangles, structure_),
+                                .world = scene,
+                                .has_masks = has_masks_,
+                                .pool = pool,
+                                .slots = queues.slots,
+                                .count = queues.count,
+                                .samples = samples};
   pipeline_.launch(kind, &params, std::min(pool.slot_count, optix_width_max));
 }
 

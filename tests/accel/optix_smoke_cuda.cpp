@@ -214,7 +214,7 @@ void try_case(const OptixContext& context, CudaOptixMemory& memory, cudaStream_t
         structure = std::make_unique<OptixStructure>(context, memory, tree, hits);
         say(fmt::format("  handle {:#x}, {} bytes, compacted {}, {:.2f} ms, margin {}",
                         structure->handle(), structure->bytes_built(), structure->bytes_compacted(),
-                        structure->build_ms(), structure->cull_margin()));
+                        structure->build_ms(), structure->reach().cull_margin));
       }))
     return;
   std::unique_ptr<OptixPipeline> pipeline;
@@ -228,7 +228,7 @@ void try_case(const OptixContext& context, CudaOptixMemory& memory, cudaStream_t
       }))
     return;
   OptixRayParams params;
-  params.scene = {tree, structure->handle(), structure->cull_margin()};
+  params.scene = {tree, structure->handle(), structure->reach().cull_margin};
   params.rays.rays = arrays.upload(scene.rays);
   params.rays.count = ray_count;
   std::vector<HitRecord> results(ray_count, HitRecord{-7.0f, 7});

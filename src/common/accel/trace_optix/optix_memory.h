@@ -9,7 +9,7 @@
 
 namespace pt {
 
-/// How far the boxes of custom primitives reach beyond hit_bounds (docs/design/optix.md).
+/// How far the boxes of custom primitives go beyond hit_bounds (docs/design/optix.md).
 struct OptixBoxMargin {
   float absolute = 0;  ///< in the triangles' space
 };

@@ -22,14 +22,14 @@ template <class Query>
 PT_HD OptixPayload to_payload(const Query& query) {
   static_assert(std::is_trivially_copyable_v<Query> && sizeof(Query) <= sizeof(OptixPayload));
   OptixPayload payload{};
-  memcpy(&payload, &query, sizeof query);
+  memcpy(&payload, static_cast<const void*>(&query), sizeof query);
   return payload;
 }
 
 /// `query`: any, whose place is taken.
 template <class Query>
 PT_HD void from_payload(const OptixPayload& payload, Query& query) {
-  memcpy(&query, &payload, sizeof query);
+  memcpy(static_cast<void*>(&query), &payload, sizeof query);
 }
 
 }  // namespace pt

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/accel/ray_record.h"
-#include "common/accel/trace_optix/optix_scene.h"
+#include "common/accel/trace_optix/optix_programs.h"
 
 namespace pt {
 
@@ -14,5 +14,27 @@ struct OptixRayParams {
 
 /// Threads of a launch, at most; each takes every so many rays.
 inline constexpr std::uint32_t optix_width_max = 1u << 20;
+
+/// Ray generation.
+template <class Api, OptixHits hits>
+PT_OPTIX_FUNCTION void trace_closest_rays(const OptixRayParams& p) {
+  for (std::uint32_t i = Api::launch_index(); i < p.rays.count; i += Api::launch_width()) {
+    const RayRecord ray = load_wide(&p.rays.rays[i]);
+    const Hit hit =
+        optix::trace_closest<Api, hits>(p.scene, ray.ray(), ClosestTriangle(ray.t_min, ray.t_max));
+    p.rays.hits[i] = hit.is_miss() ? HitRecord{-1.0f, no_primitive}
+                                   : HitRecord{hit.t, p.scene.tree.triangles[hit.primitive].id};
+  }
+}
+
+template <class Api, OptixHits hits>
+PT_OPTIX_FUNCTION void trace_any_rays(const OptixRayParams& p) {
+  for (std::uint32_t i = Api::launch_index(); i < p.rays.count; i += Api::launch_width()) {
+    const RayRecord ray = load_wide(&p.rays.rays[i]);
+    const bool met =
+        optix::trace_any<Api, hits>(p.scene, ray.ray(), AnyTriangle(ray.t_min, ray.t_max));
+    p.rays.hits[i] = {met ? 0.0f : -1.0f, no_primitive};
+  }
+}
 
 }  // namespace pt

@@ -9,8 +9,16 @@ namespace pt {
 struct OptixScene {
   TriangleTree tree;
   optix::TraversableHandle handle = 0;
-  float cull_margin = 0;  ///< OptixStructure::cull_margin
+  float cull_margin = 0;  ///< OptixReach
+  Vec3 centre{0.0f};
+  float reach = 0;
 };
+
+/// Whether the ray begins so far outside that rounding moves its hits by more than the margins of
+/// boxes. Such rays, of distant cameras, are traced through our own tree.
+PT_HD bool begins_too_far(const OptixScene& scene, const Ray& ray) {
+  return !(max_abs(ray.origin - scene.centre) <= scene.reach);
+}
 
 /// The interval of boxes that OptiX must visit for hits with t_min < t < t_max: our bounds on where
 /// a ray enters and leaves the box of a triangle that is met (docs/design/tracing.md), with much to

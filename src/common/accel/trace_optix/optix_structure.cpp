@@ -10,12 +10,14 @@
 namespace pt {
 namespace {
 
-// What rounding does to a ray on its way into an instance, of our transform and of OptiX's, in half
-// ulps of the sum of the terms' sizes.
-constexpr float transform_error = 32.0f * half_ulp;
-// Of the distance to a triangle that is met (hit_error_distance), twice and more for rays from
-// outside.
-constexpr float distance_error = 64.0f * half_ulp;
+// In half ulps. Where a triangle is met, its point is beside the ray by hit_error_distance of the
+// distance, which is up to sqrt(3) times the one along an axis: with the ray's reach, and half the
+// scene.
+constexpr float near_reach = 8.0f, near_error = 1.75f * (near_reach + 0.5f) * hit_error_distance;
+// In an instance's space, of the sum of the terms' sizes of a transformed point: twice that for the
+// ray's two ends, and what our transform, OptiX's and its inverse lose.
+constexpr float instance_reach = 1.5f,
+                instance_error = 1.75f * 2 * hit_error_distance + 64.0f * half_ulp;
 
 float size_of(const Bounds& bounds) { return max_abs(bounds.max - bounds.min); }
 
@@ -51,47 +53,56 @@ OptixStructure::OptixStructure(const OptixContext& context, OptixMemory& memory,
                                const TriangleTree& tree, OptixHits hits)
     : context_(context), memory_(memory) {
   const auto begin = std::chrono::steady_clock::now();
-  if (tree.instance_count == 0) {
-    if (tree.triangle_count > 0) {
-      std::vector<Triangle> triangles(tree.triangle_count);
-      memory.to_host(triangles.data(), tree.triangles, triangles.size() * sizeof(Triangle));
-      Bounds all = hit_bounds(triangles[0].v0, triangles[0].v1, triangles[0].v2);
-      for (const Triangle& t : triangles) {
-        const Bounds box = triangle_bounds(t.v0, t.v1, t.v2);
-        all = {glm::min(all.min, box.min), glm::max(all.max, box.max)};
-      }
-      handle_ =
-          build_group(tree.triangles, tree.triangle_count, hits, {distance_error * size_of(all)});
-    }
-  } else {
-    std::vector<InstanceRecord> records(tree.instance_count);
-    memory.to_host(records.data(), tree.instances, records.size() * sizeof(InstanceRecord));
-    const Bounds world = bounds_of(records);
-    // In the order of the slots, so that a group is found by its first one.
-    std::vector<Group> groups;
-    for (const InstanceRecord& record : records)
-      groups.push_back({record.first_slot, record.slot_count, 0});
-    std::ranges::sort(groups, {}, &Group::first_slot);
-    const auto same = std::ranges::unique(groups, {}, &Group::first_slot);
-    groups.erase(same.begin(), same.end());
-    std::vector<float> margins(groups.size());
-    for (const InstanceRecord& record : records) {
-      const auto g = static_cast<std::size_t>(
-          std::ranges::lower_bound(groups, record.first_slot, {}, &Group::first_slot) -
-          groups.begin());
-      const float margin =
-          (transform_error + distance_error) * size_inside(record.to_object, world);
-      margins[g] = std::max(margins[g], margin);
-      cull_margin_ = std::max(cull_margin_, margin * norm_of(inverse(record.to_object)));
-    }
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      groups[g].handle = build_group(tree.triangles + groups[g].first_slot, groups[g].slot_count,
-                                     hits, {margins[g]});
-    }
-    handle_ = build_instances(records, groups);
+  if (tree.instance_count > 0) {
+    build_scene(tree, hits);
+  } else if (tree.triangle_count > 0) {
+    build_triangles(tree, hits);
   }
   build_ms_ =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+void OptixStructure::build_triangles(const TriangleTree& tree, OptixHits hits) {
+  std::vector<Triangle> triangles(tree.triangle_count);
+  memory_.to_host(triangles.data(), tree.triangles, triangles.size() * sizeof(Triangle));
+  Bounds all = triangle_bounds(triangles[0].v0, triangles[0].v1, triangles[0].v2);
+  for (const Triangle& t : triangles) {
+    const Bounds box = triangle_bounds(t.v0, t.v1, t.v2);
+    all = {glm::min(all.min, box.min), glm::max(all.max, box.max)};
+  }
+  reach_ = {0.5f * (all.min + all.max), near_reach * size_of(all), 0};
+  handle_ = build_group(tree.triangles, tree.triangle_count, hits, {near_error * size_of(all)});
+}
+
+/// The groups and the instances.
+void OptixStructure::build_scene(const TriangleTree& tree, OptixHits hits) {
+  std::vector<InstanceRecord> records(tree.instance_count);
+  memory_.to_host(records.data(), tree.instances, records.size() * sizeof(InstanceRecord));
+  const Bounds world = bounds_of(records);
+  reach_ = {0.5f * (world.min + world.max), instance_reach * size_of(world), 0};
+  const Bounds reached{reach_.centre - Vec3(reach_.distance),
+                       reach_.centre + Vec3(reach_.distance)};
+  // In the order of the slots, so that a group is found by its first one.
+  std::vector<Group> groups;
+  for (const InstanceRecord& record : records)
+    groups.push_back({record.first_slot, record.slot_count, 0});
+  std::ranges::sort(groups, {}, &Group::first_slot);
+  const auto same = std::ranges::unique(groups, {}, &Group::first_slot);
+  groups.erase(same.begin(), same.end());
+  std::vector<float> margins(groups.size());
+  for (const InstanceRecord& record : records) {
+    const auto g = static_cast<std::size_t>(
+        std::ranges::lower_bound(groups, record.first_slot, {}, &Group::first_slot) -
+        groups.begin());
+    const float margin = instance_error * size_inside(record.to_object, reached);
+    margins[g] = std::max(margins[g], margin);
+    reach_.cull_margin = std::max(reach_.cull_margin, margin * norm_of(inverse(record.to_object)));
+  }
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    groups[g].handle = build_group(tree.triangles + groups[g].first_slot, groups[g].slot_count,
+                                   hits, {margins[g]});
+  }
+  handle_ = build_instances(records, groups);
 }
 
 optix::TraversableHandle OptixStructure::build_group(const Triangle* triangles, std::uint32_t count,

@@ -6,10 +6,20 @@
 
 #include "common/accel/trace_optix/optix_library.h"
 #include "common/accel/trace_optix/optix_memory.h"
+#include "common/accel/trace_optix/optix_scene.h"
 #include "common/accel/triangle_tree.h"
 #include "common/choices/optix_hits.h"
 
 namespace pt {
+
+/// What the structure's margins allow of rays.
+struct OptixReach {
+  Vec3 centre{0.0f};
+  float distance = 0;  ///< how far from the centre, along each axis, a ray may begin
+  /// How much farther than the best hit one in an instance may seem to lie, for directions of
+  /// length 1.
+  float cull_margin = 0;
+};
 
 class OptixStructure {
  public:
@@ -19,9 +29,7 @@ class OptixStructure {
                  OptixHits hits);
 
   optix::TraversableHandle handle() const { return handle_; }
-  /// How much farther than the best hit one in an instance may seem to lie, for directions of
-  /// length 1.
-  float cull_margin() const { return cull_margin_; }
+  const OptixReach& reach() const { return reach_; }
   /// Wall time of building and compaction.
   double build_ms() const { return build_ms_; }
   std::size_t bytes_built() const { return bytes_built_; }
@@ -33,6 +41,8 @@ class OptixStructure {
     optix::TraversableHandle handle;
   };
 
+  void build_triangles(const TriangleTree& tree, OptixHits hits);
+  void build_scene(const TriangleTree& tree, OptixHits hits);
   optix::TraversableHandle build_group(const Triangle* triangles, std::uint32_t count,
                                        OptixHits hits, const OptixBoxMargin& margin);
   optix::TraversableHandle build_instances(const std::vector<InstanceRecord>& records,
@@ -43,9 +53,15 @@ class OptixStructure {
   OptixMemory& memory_;
   std::vector<OptixBuffer> buffers_;
   optix::TraversableHandle handle_ = 0;
-  float cull_margin_ = 0;
+  OptixReach reach_;
   double build_ms_ = 0;
   std::size_t bytes_built_ = 0, bytes_ = 0;
 };
+
+/// What the programs are told of the structure over `tree`.
+inline OptixScene optix_scene(const TriangleTree& tree, const OptixStructure& structure) {
+  const OptixReach& reach = structure.reach();
+  return {tree, structure.handle(), reach.cull_margin, reach.centre, reach.distance};
+}
 
 }  // namespace pt

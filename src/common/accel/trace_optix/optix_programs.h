@@ -1,0 +1,193 @@
+// The programs that OptiX runs: for each kind of OptixHits those that judge its candidates, and
+// what a ray generation program calls to trace a ray.
+//
+// `Api` has OptiX's functions: DeviceApi (optix_intrinsics.cuh), or those of a test that emulates
+// OptiX on the host. PT_OPTIX_FUNCTION is how its functions are declared.
+#pragma once
+
+#include "common/accel/trace_optix/optix_payload.h"
+#include "common/accel/trace_optix/optix_scene.h"
+#include "common/accel/traverse_cwbvh.h"
+#include "common/choices/optix_hits.h"
+
+#ifndef PT_OPTIX_FUNCTION
+#define PT_OPTIX_FUNCTION inline
+#endif
+
+namespace pt::optix {
+
+/// OptixPayload of the program that runs.
+template <class Api, class Query>
+PT_OPTIX_FUNCTION void load_query(Query& query) {
+  OptixPayload payload;
+  for (int i = 0; i < optix_payload_words; ++i) payload.word[i] = Api::payload_word(i);
+  from_payload(payload, query);
+}
+
+template <class Api, class Query>
+PT_OPTIX_FUNCTION void store_query(const Query& query) {
+  const OptixPayload payload = to_payload(query);
+  for (int i = 0; i < static_cast<int>(sizeof(Query) / 4); ++i)
+    Api::set_payload_word(i, payload.word[i]);
+}
+
+template <class Api>
+PT_OPTIX_FUNCTION std::uint32_t named_instance(const TriangleTree& tree) {
+  return tree.instance_count == 0 ? 0 : Api::instance_id();
+}
+
+template <class Api, class Query>
+PT_OPTIX_FUNCTION bool offer_named(const TriangleTree& tree, Query& query) {
+  return offer_candidate(tree, Api::world_ray(), Api::primitive_index(), named_instance<Api>(tree),
+                         query);
+}
+
+/// Reports where OptiX may stop to look, not where the hit is: others at the same distance must
+/// still be offered.
+template <class Api, class Query>
+PT_OPTIX_FUNCTION void intersect_closest_box(const OptixScene& scene) {
+  Query query(0.0f, 0.0f);
+  load_query<Api>(query);
+  const float before = query.t_max();
+  offer_named<Api>(scene.tree, query);
+  if (!(query.t_max() < before)) return store_query<Api>(query);
+  store_query<Api>(query);
+  Api::report_intersection(optix_t_max(query.t_max(), optix_cull_margin(scene, Api::world_ray())));
+}
+
+/// With ray_terminate_on_first_hit.
+template <class Api, class Query>
+PT_OPTIX_FUNCTION void intersect_any_box(const OptixScene& scene) {
+  Query query(0.0f, 0.0f);
+  load_query<Api>(query);
+  if (!offer_named<Api>(scene.tree, query)) return;
+  store_query<Api>(query);
+  Api::report_intersection(Api::ray_t_max());
+}
+
+/// First of two traces: a triangle is accepted, which ends OptiX's interval where it is, if it is
+/// nearer than the others before.
+template <class Api, class Query>
+PT_OPTIX_FUNCTION void accept_closest(const OptixScene& scene) {
+  Query query(0.0f, 0.0f);
+  load_query<Api>(query);
+  const float before = query.t_max();
+  offer_named<Api>(scene.tree, query);
+  store_query<Api>(query);
+  if (!(query.t_max() < before)) Api::ignore_intersection();
+}
+
+/// Second trace, up to the hit of the first: every triangle is judged, none ends the interval.
+template <class Api, class Query>
+PT_OPTIX_FUNCTION void judge_all(const OptixScene& scene) {
+  Query query(0.0f, 0.0f);
+  load_query<Api>(query);
+  offer_named<Api>(scene.tree, query);
+  store_query<Api>(query);
+  Api::ignore_intersection();
+}
+
+template <class Api, class Query>
+PT_OPTIX_FUNCTION void accept_any(const OptixScene& scene) {
+  Query query(0.0f, 0.0f);
+  load_query<Api>(query);
+  if (!offer_named<Api>(scene.tree, query)) return Api::ignore_intersection();
+  store_query<Api>(query);
+  Api::terminate_ray();
+}
+
+/// OptiX's own hit, as words of a Hit.
+template <class Api>
+PT_OPTIX_FUNCTION void name_hit(const OptixScene& scene) {
+  const std::uint32_t instance = named_instance<Api>(scene.tree);
+  const std::uint32_t first =
+      scene.tree.instance_count == 0 ? 0 : scene.tree.instances[instance].first_slot;
+  store_query<Api>(Hit{Api::ray_t_max(), first + Api::primitive_index(), instance});
+}
+
+/// Through our own tree.
+template <class Query>
+PT_OPTIX_FUNCTION Query trace_far(const TriangleTree& tree, const Ray& ray, Query query) {
+  traverse_cwbvh<true>(tree, ray, query);
+  return query;
+}
+
+/// `query` is fresh. The hit is that of our tests; with OptixHits::built_in OptiX's distance stays
+/// where our test finds that its triangle is missed.
+template <class Api, OptixHits hits, class Query>
+PT_OPTIX_FUNCTION Hit trace_closest(const OptixScene& scene, const Ray& ray, Query query) {
+  if (!is_traceable(ray)) return {};
+  const float margin = optix_cull_margin(scene, ray);
+  const float t_min = optix_t_min(query.t_min(), margin);
+  const float t_max = optix_t_max(query.t_max(), margin);
+  if constexpr (hits == OptixHits::built_in) {
+    OptixPayload payload = to_payload(Hit());
+    Api::trace(scene.handle, ray, query.t_min(), query.t_max(), ray_disable_anyhit,
+               optix_record_closest, payload);
+    Hit hit;
+    from_payload(payload, hit);
+    if (hit.is_miss()) return hit;
+    const std::uint32_t first =
+        scene.tree.instance_count == 0 ? 0 : scene.tree.instances[hit.instance].first_slot;
+    offer_candidate(scene.tree, ray, hit.primitive - first, hit.instance, query);
+    const Hit ours = query.result();
+    return ours.is_miss() ? hit : ours;
+  } else {
+    if (begins_too_far(scene, ray)) return trace_far(scene.tree, ray, query).result();
+    OptixPayload payload = to_payload(query);
+    Api::trace(scene.handle, ray, t_min, t_max,
+               hits == OptixHits::custom ? ray_disable_anyhit | ray_disable_closesthit
+                                         : ray_disable_closesthit,
+               optix_record_closest, payload);
+    from_payload(payload, query);
+    if (hits == OptixHits::any_hit && !query.result().is_miss()) {
+      Api::trace(scene.handle, ray, t_min, optix_t_max(query.t_max(), margin),
+                 ray_disable_closesthit, optix_record_ties, payload);
+      from_payload(payload, query);
+    }
+    return query.result();
+  }
+}
+
+/// Whether anything is met.
+template <class Api, OptixHits hits, class Query>
+PT_OPTIX_FUNCTION bool trace_any(const OptixScene& scene, const Ray& ray, Query query) {
+  if (!is_traceable(ray)) return false;
+  const float margin = optix_cull_margin(scene, ray);
+  if constexpr (hits == OptixHits::built_in) {
+    OptixPayload payload = to_payload(Hit());
+    Api::trace(scene.handle, ray, query.t_min(), query.t_max(),
+               ray_disable_anyhit | ray_terminate_on_first_hit, optix_record_any, payload);
+    Hit hit;
+    from_payload(payload, hit);
+    return !hit.is_miss();
+  } else {
+    if (begins_too_far(scene, ray)) return trace_far(scene.tree, ray, query).result();
+    OptixPayload payload = to_payload(query);
+    Api::trace(scene.handle, ray, optix_t_min(query.t_min(), margin),
+               optix_t_max(query.t_max(), margin),
+               hits == OptixHits::custom
+                   ? ray_disable_anyhit | ray_disable_closesthit | ray_terminate_on_first_hit
+                   : ray_disable_closesthit,
+               optix_record_any, payload);
+    from_payload(payload, query);
+    return query.result();
+  }
+}
+
+}  // namespace pt::optix
+
+/// The programs that judge, for a module whose OptixScene is `scene`, in constant memory.
+#define PT_OPTIX_HIT_PROGRAMS(Api, Closest, Any, scene)                                      \
+  extern "C" __global__ void __intersection__closest() {                                     \
+    pt::optix::intersect_closest_box<Api, Closest>(scene);                                   \
+  }                                                                                          \
+  extern "C" __global__ void __intersection__any() {                                         \
+    pt::optix::intersect_any_box<Api, Any>(scene);                                           \
+  }                                                                                          \
+  extern "C" __global__ void __anyhit__closest() {                                           \
+    pt::optix::accept_closest<Api, Closest>(scene);                                          \
+  }                                                                                          \
+  extern "C" __global__ void __anyhit__ties() { pt::optix::judge_all<Api, Closest>(scene); } \
+  extern "C" __global__ void __anyhit__any() { pt::optix::accept_any<Api, Any>(scene); }     \
+  extern "C" __global__ void __closesthit__name() { pt::optix::name_hit<Api>(scene); }

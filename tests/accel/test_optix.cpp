@@ -1,0 +1,265 @@
+// OptiX's interface by a library of the tests' own: every call and every error, and the programs
+// that judge candidates against our trees.
+#include <gtest/gtest.h>
+
+#include "accel/emulated_optix.h"
+#include "accel/hard_hits.h"
+#include "accel/instance_crowds.h"
+#include "accel/instanced_meshes.h"
+#include "accel/tree_kinds.h"
+#include "accel/triangle_meshes.h"
+#include "common/accel/trace_optix/optix_pipeline.h"
+#include "common/accel/trace_optix/optix_rays.h"
+#include "common/accel/trace_optix/optix_structure.h"
+#include "common/error/error.h"
+
+namespace pt {
+namespace {
+
+const OptixRayParams* ray_params = nullptr;
+
+template <OptixHits hits>
+void add_ray_generation(OptixPrograms& programs, const std::string& name) {
+  programs["__raygen__closest_" + name] = [] {
+    trace_closest_rays<EmulatedApi, hits>(*ray_params);
+  };
+  programs["__raygen__any_" + name] = [] { trace_any_rays<EmulatedApi, hits>(*ray_params); };
+}
+
+OptixPrograms ray_programs() {
+  using namespace optix;
+  OptixPrograms programs;
+  const auto scene = []() -> const OptixScene& { return ray_params->scene; };
+  programs["__intersection__closest"] = [=] {
+    intersect_closest_box<EmulatedApi, ClosestTriangle>(scene());
+  };
+  programs["__intersection__any"] = [=] { intersect_any_box<EmulatedApi, AnyTriangle>(scene()); };
+  programs["__anyhit__closest"] = [=] { accept_closest<EmulatedApi, ClosestTriangle>(scene()); };
+  programs["__anyhit__ties"] = [=] { judge_all<EmulatedApi, ClosestTriangle>(scene()); };
+  programs["__anyhit__any"] = [=] { accept_any<EmulatedApi, AnyTriangle>(scene()); };
+  programs["__closesthit__name"] = [=] { name_hit<EmulatedApi>(scene()); };
+  add_ray_generation<OptixHits::custom>(programs, "custom");
+  add_ray_generation<OptixHits::any_hit>(programs, "any_hit");
+  add_ray_generation<OptixHits::built_in>(programs, "built_in");
+  return programs;
+}
+
+/// A tree, and OptiX beside it.
+struct World {
+  TriangleTreeData data;
+  HostOptixMemory memory;
+  OptixContext context{std::make_shared<const OptixLibrary>()};
+  OptixStructure structure;
+  OptixPipeline pipeline;
+
+  World(TriangleTreeData tree, OptixHits hits)
+      : data(std::move(tree)),
+        structure(context, memory, data.view(), hits),
+        pipeline(context, memory, "code", hits, sizeof(OptixRayParams), !data.instances.empty()) {}
+
+  std::vector<HitRecord> trace(const RaySet& set) {
+    std::vector<HitRecord> hits(set.rays.size(), HitRecord{-7, 7});
+    OptixRayParams params;
+    params.scene = optix_scene(data.view(), structure);
+    params.rays.rays = set.rays.data(), params.rays.hits = hits.data();
+    params.rays.count = static_cast<std::uint32_t>(hits.size());
+    const auto kind = set.type == RayType::any ? OptixPipeline::any : OptixPipeline::closest;
+    pipeline.launch(kind, &params, 64);  // each thread takes several rays
+    return hits;
+  }
+};
+
+int count_differences(World& world, const RaySet& set) {
+  const std::vector<HitRecord> hits = world.trace(set);
+  int differ = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const RayRecord& ray = set.rays[i];
+    if (set.type == RayType::any) {
+      differ += (hits[i].t == 0) != any_hit(world.data, ray.ray(), ray.t_min, ray.t_max);
+      continue;
+    }
+    const Hit hit = closest_hit(world.data, ray.ray(), ray.t_min, ray.t_max);
+    const std::uint32_t id = hit.is_miss() ? no_primitive : world.data.triangles[hit.primitive].id;
+    differ += hits[i].primitive != id || hits[i].t != (hit.is_miss() ? -1.0f : hit.t);
+  }
+  return differ;
+}
+
+class Optix : public testing::TestWithParam<OptixHits> {
+ protected:
+  void SetUp() override {
+    fake_.emulate(ray_programs(), [](const void* params) {
+      ray_params = static_cast<const OptixRayParams*>(params);
+    });
+  }
+
+  /// Our test judges: no hit may differ. OptiX's own choice may, at edges and of equal distances.
+  void expect_equal(World& world, const RaySet& set) const {
+    const int differ = count_differences(world, set);
+    if (GetParam() == OptixHits::built_in) {
+      RecordProperty("differing", differ);
+    } else {
+      EXPECT_EQ(differ, 0) << "of " << set.rays.size();
+    }
+  }
+
+  UsedFakeOptix fake_;
+};
+
+TEST_P(Optix, GivesTheHitsOfOurTreesWhereTheseAreHard) {
+  for (const MeshKind& kind : hard_mesh_kinds) {
+    SCOPED_TRACE(kind.name);
+    const Mesh mesh = kind.make(120);
+    World world(tree_kinds[2].build({mesh}), GetParam());
+    for (const RayType type : {RayType::closest, RayType::any})
+      expect_equal(world, hard_rays(mesh, 40, type));
+  }
+}
+
+TEST_P(Optix, GivesTheHitsOfInstances) {
+  const InstancedMeshes meshes = make_instanced_meshes(12);
+  for (const TreeKind& kind : {tree_kinds[2], tree_kinds[3]}) {
+    World world(kind.build(meshes.meshes, meshes.instances), GetParam());
+    for (const RayType type : {RayType::closest, RayType::any})
+      expect_equal(world, rays_through(800, type));
+  }
+}
+
+TEST_P(Optix, FindsSomethingAndMisses) {
+  const Mesh mesh = make_soup(200, 5);
+  World world(tree_kinds[2].build({mesh}), GetParam());
+  const std::vector<HitRecord> hits = world.trace(hard_rays(mesh, 40));
+  const auto misses = std::ranges::count(hits, no_primitive, &HitRecord::primitive);
+  EXPECT_GT(misses, 0);
+  EXPECT_LT(misses, static_cast<std::ptrdiff_t>(hits.size()));
+}
+
+TEST_P(Optix, OfNoTrianglesMeetsNothing) {
+  World world(brute_kind.build({}), GetParam());
+  EXPECT_EQ(world.structure.handle(), 0u);
+  RaySet set;
+  set.rays.push_back({Vec3(0), 0, Vec3(1, 0, 0), infinite_distance});
+  EXPECT_EQ(world.trace(set)[0].primitive, no_primitive);
+}
+
+TEST_P(Optix, FailsAtEachCallInOneLineAndLeavesNothing) {
+  const InstancedMeshes meshes = make_instanced_meshes(2);
+  const TriangleTreeData tree = brute_kind.build(meshes.meshes, meshes.instances);
+  fake_->run = nullptr;
+  const auto use = [&](HostOptixMemory& memory) {
+    const OptixContext context(std::make_shared<const OptixLibrary>());
+    const OptixStructure structure(context, memory, tree.view(), GetParam());
+    OptixPipeline pipeline(context, memory, "code", GetParam(), 16, true);
+    const char params[16] = {};
+    pipeline.launch(OptixPipeline::any, params, 1);
+  };
+  HostOptixMemory memory;
+  use(memory);
+  const auto calls = fake_->calls;
+  EXPECT_EQ(fake_->live, 0);
+  EXPECT_TRUE(memory.allocated.empty());
+  ASSERT_GT(calls.size(), 20u);
+  for (std::size_t i = 0; i < calls.size(); ++i) {
+    fake_->calls.clear();
+    fake_->fail_at = static_cast<int>(i);
+    std::string message;
+    try {
+      use(memory);
+    } catch (const Error& error) {
+      message = error.what();
+    }
+    SCOPED_TRACE(calls[i] + ": " + message);
+    EXPECT_EQ(message.rfind("OptiX: ", 0), 0u);
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+    if (calls[i] != "query") EXPECT_NE(message.find("OPTIX_ERROR_FAKE (7900)"), std::string::npos);
+    const bool logs = calls[i].find("create") != std::string::npos && calls[i] != "context_create";
+    EXPECT_EQ(message.find("the log?of two lines") != std::string::npos, logs);
+    EXPECT_EQ(fake_->live, 0);
+    EXPECT_TRUE(memory.allocated.empty());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Hits, Optix,
+                         testing::Values(OptixHits::custom, OptixHits::any_hit,
+                                         OptixHits::built_in),
+                         [](const auto& test) {
+                           return test.param == OptixHits::custom    ? "custom"
+                                  : test.param == OptixHits::any_hit ? "any_hit"
+                                                                     : "built_in";
+                         });
+
+std::string problem_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(OptixLibrary, RefusesWhatItDoesNotKnow) {
+  UsedFakeOptix fake;
+  const auto problem = [] { return problem_of([] { OptixLibrary(); }); };
+  EXPECT_EQ(problem(), "");
+  fake->known_abi = 88;
+  EXPECT_NE(problem().find("ABI 87 with 48 functions (error 7801, unsupported ABI)"),
+            std::string::npos);
+  fake->known_abi = 87, fake->pointers = 47;
+  EXPECT_NE(problem().find("(error 7802, size of the table)"), std::string::npos);
+  setenv("PTEXP_OPTIX_LIBRARY", "/nowhere/libnvoptix.so.1", 1);
+  EXPECT_NE(problem().find("cannot load '/nowhere/libnvoptix.so.1'"), std::string::npos);
+  setenv("PTEXP_OPTIX_LIBRARY", "libc.so.6", 1);
+  EXPECT_NE(problem().find("'libc.so.6' has no optixQueryFunctionTable"), std::string::npos);
+}
+
+TEST(OptixStructure, RefusesMoreThanOptixTakes) {
+  UsedFakeOptix fake;
+  const InstancedMeshes meshes = make_instanced_meshes(3);
+  const TriangleTreeData tree = brute_kind.build(meshes.meshes, meshes.instances);
+  HostOptixMemory memory;
+  const OptixContext context(std::make_shared<const OptixLibrary>());
+  const auto problem = [&] {
+    return problem_of([&] { OptixStructure(context, memory, tree.view(), OptixHits::custom); });
+  };
+  fake->primitives_max = 2;
+  EXPECT_NE(problem().find("triangles; OptiX takes at most 2"), std::string::npos);
+  fake->primitives_max = 1000000, fake->instances_max = 3;
+  EXPECT_NE(problem().find("instances; OptiX takes at most 3"), std::string::npos);
+}
+
+TEST(OptixStructure, IsCompactedAndSaysHowLargeItIs) {
+  UsedFakeOptix fake;
+  const TriangleTreeData tree = brute_kind.build({make_soup(50, 5)});
+  HostOptixMemory memory;
+  const OptixContext context(std::make_shared<const OptixLibrary>());
+  const OptixStructure structure(context, memory, tree.view(), OptixHits::any_hit);
+  EXPECT_EQ(structure.bytes_built(), 512u);
+  EXPECT_EQ(structure.bytes_compacted(), 128u);
+  EXPECT_EQ(memory.allocated.size(), 1u);
+}
+
+TEST(OptixPipeline, NeedsCode) {
+  UsedFakeOptix fake;
+  HostOptixMemory memory;
+  const OptixContext context(std::make_shared<const OptixLibrary>());
+  EXPECT_NE(problem_of([&] {
+              OptixPipeline(context, memory, "", OptixHits::custom, 16, false);
+            }).find("built without programs"),
+            std::string::npos);
+}
+
+TEST(OptixPipeline, NamesWhatItsProgramsMeet) {
+  UsedFakeOptix fake;
+  HostOptixMemory memory;
+  const OptixContext context(std::make_shared<const OptixLibrary>());
+  OptixPipeline(context, memory, "some code", OptixHits::custom, 16, false);
+  EXPECT_EQ(fake->code, "some code");
+  EXPECT_EQ(fake->pipeline.primitive_flags, optix::primitives_custom);
+  EXPECT_EQ(fake->pipeline.graph_flags, optix::graph_single_gas);
+  OptixPipeline(context, memory, "some code", OptixHits::built_in, 16, true);
+  EXPECT_EQ(fake->pipeline.primitive_flags, optix::primitives_triangle);
+  EXPECT_EQ(fake->pipeline.graph_flags, optix::graph_single_level_instancing);
+}
+
+}  // namespace
+}  // namespace pt
