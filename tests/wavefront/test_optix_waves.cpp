@@ -1,0 +1,195 @@
+// The wavefront whose rays OptiX traces, on the CPU by a library of the tests' own: one image with
+// the serial mode, bit for bit.
+#include <numeric>
+
+#include "accel/emulated_optix.h"
+#include "common/device/cpu/cpu_renderer.h"
+#include "medium/filled_glasses.h"
+#include "mode_cases.h"
+#include "scene/masked_room.h"
+#include "scene/mixed_scene.h"
+#include "wavefront/loop.h"
+#include "wavefront/optix_tracer.h"
+#include "wavefront/run_stage_cpu.h"
+
+namespace pt {
+namespace {
+
+const OptixQueueParams* queue_params = nullptr;
+
+struct QueueApi : EmulatedApi {
+  static MaskView masks() { return MaskView(queue_params->world); }
+};
+
+template <OptixHits hits>
+void add_ray_generation(OptixPrograms& programs, const std::string& name) {
+  programs["__raygen__closest_" + name] = [] { trace_queued_paths<QueueApi, hits>(*queue_params); };
+  programs["__raygen__any_" + name] = [] {
+    trace_queued_shadow_rays<QueueApi, hits>(*queue_params);
+  };
+}
+
+OptixPrograms queue_programs() {
+  using namespace optix;
+  using Closest = ClosestJudge<QueueApi>;
+  using Any = AnyJudge<QueueApi>;
+  OptixPrograms programs;
+  const auto scene = []() -> const OptixScene& { return queue_params->scene; };
+  programs["__intersection__closest"] = [=] { intersect_closest_box<QueueApi, Closest>(scene()); };
+  programs["__intersection__any"] = [=] { intersect_any_box<QueueApi, Any>(scene()); };
+  programs["__anyhit__closest"] = [=] { accept_closest<QueueApi, Closest>(scene()); };
+  programs["__anyhit__ties"] = [=] { judge_all<QueueApi, Closest>(scene()); };
+  programs["__anyhit__any"] = [=] { accept_any<QueueApi, Any>(scene()); };
+  programs["__closesthit__name"] = [=] { name_hit<QueueApi>(scene()); };
+  add_ray_generation<OptixHits::custom>(programs, "custom");
+  add_ray_generation<OptixHits::any_hit>(programs, "any_hit");
+  add_ray_generation<OptixHits::built_in>(programs, "built_in");
+  return programs;
+}
+
+/// One pool for all threads; OptiX traces its queues.
+class OptixWaves : public CpuRenderer {
+ public:
+  OptixWaves(const ExecutionPlan& plan, const SceneData& scene, std::uint32_t slots)
+      : CpuRenderer(plan, scene),
+        tracer_(optix_memory_, scene_, scene.properties.has_masks, plan.optix_hits, "code") {
+    buffers_.policy = WavePolicy(plan, traits_, scene_, false);
+    buffers_.pool.slot_count = buffers_.all_slots = slots;
+    buffers_.counters = &counters_;
+    buffers_.slot_count = &buffers_.pool.slot_count;
+    buffers_.pool.allocate_arrays(buffers_.policy.fields, [&](auto* p, std::uint64_t count) {
+      return array<std::remove_pointer_t<decltype(p)>>(count);
+    });
+    buffers_.for_each_queue([&](auto*& queue, std::uint64_t capacity) {
+      queue = array<std::remove_pointer_t<std::remove_reference_t<decltype(queue)>>>(capacity);
+    });
+  }
+
+  // The Executor of run_wave:
+  void compact(const CompactionRequest&) {}
+  void order_surfaces(const SurfaceOrder&) {}
+  void begin_wave() { more_ = pt::begin_wave(counters_, path_count_, true, 0); }
+  static constexpr bool streams_shading = false;
+  template <class Stage>
+  void run(const Stage& stage, const StageQueues& queues) {
+    run_stage_cpu(stage, scene_, queues);
+  }
+  template <class Traits>
+  static constexpr bool traces_queues = true;
+  bool traces_queues_here() const { return true; }
+  void trace_queue(const StageQueues& queues, const SampleBuffer& samples) {
+    tracer_.trace_queue(scene_, buffers_.pool, queues, samples);
+  }
+  void trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples) {
+    tracer_.trace_shadow_queue(scene_, buffers_.pool, queues, samples);
+  }
+  static constexpr bool flies_queues = false;
+  template <class Wave>
+  void while_waves(Wave&& wave) {
+    while (more_) wave();
+  }
+
+ private:
+  void trace_batch(const SampleBuffer& batch) override {
+    path_count_ = batch.path_count;
+    counters_ = {};
+    std::uint32_t* const free = buffers_.queue(free_slot);
+    std::iota(free, free + buffers_.pool.slot_count, 0u);
+    *buffers_.waiting(free_slot) = buffers_.pool.slot_count;
+    const SamplerSource source = sampler_source_of(plan_);
+    const StageContext<SamplerSource> context{
+        buffers_.pool,  batch,   source, &counters_, buffers_.queue(StageId::intersect),
+        path_settings_, supply()};
+    more_ = true;
+    dispatch_traits(CpuKindsWith<SamplerSource>{}, traits_, [&](auto traits) {
+      run_all_waves(
+          *this, buffers_, false,
+          [&](bool starts_paths) {
+            run_wave<decltype(traits), Branching::divergent>(*this, buffers_, context,
+                                                             starts_paths);
+          },
+          [] {});
+    });
+  }
+
+  template <class T>
+  T* array(std::uint64_t count) {
+    arrays_.push_back(
+        std::shared_ptr<void>(new T[count]{}, [](void* p) { delete[] static_cast<T*>(p); }));
+    return static_cast<T*>(arrays_.back().get());
+  }
+
+  HostOptixMemory optix_memory_;
+  OptixTracer tracer_;
+  WaveCounters counters_{};
+  WaveBuffers buffers_;
+  std::vector<std::shared_ptr<void>> arrays_;
+  std::uint32_t path_count_ = 0;
+  bool more_ = true;
+};
+
+class OptixWavesOf : public testing::TestWithParam<OptixHits> {
+ protected:
+  OptixWavesOf() {
+    fake_.emulate(queue_programs(), [](const void* params) {
+      queue_params = static_cast<const OptixQueueParams*>(params);
+    });
+  }
+
+  void expect_equal(const SceneData& scene, const Settings& more = {}) {
+    const Options options = with(Options(), {{"device", "cpu"},
+                                             {"mode", "wavefront"},
+                                             {"accel", "cwbvh"},
+                                             {"width", "24"},
+                                             {"height", "18"},
+                                             {"spp", "2"},
+                                             {"max-depth", "5"},
+                                             {"finish-paths", "0"}});
+    const Options own = with(options, more);
+    const DeviceInfo device = choose_device(own.device);
+    SceneData prepared = scene;
+    prepare_scene_for(prepared, own, device);
+    const Rendered expected =
+        take_image(*make_renderer(with(own, {{"mode", "serial"}}), prepared, device));
+    expect_plausible(expected, own);
+    ExecutionPlan plan = plan_for(own, prepared, device);
+    plan.optix_hits = GetParam();
+    OptixWaves waves(plan, prepared, 333);
+    const Rendered found = take_image(waves);
+    if (GetParam() == OptixHits::built_in) {
+      EXPECT_LE(differing_pixels(found.image, expected.image), 24u * 18 / 10);
+    } else {
+      expect_same(found, expected);
+    }
+    EXPECT_GT(std::ranges::count(fake_->calls, "launch"), 4);
+  }
+
+  UsedFakeOptix fake_;
+};
+INSTANTIATE_TEST_SUITE_P(Hits, OptixWavesOf,
+                         testing::Values(OptixHits::custom, OptixHits::any_hit,
+                                         OptixHits::built_in),
+                         [](const auto& test) {
+                           return test.param == OptixHits::custom    ? "custom"
+                                  : test.param == OptixHits::any_hit ? "any_hit"
+                                                                     : "built_in";
+                         });
+
+SceneData made(const std::string& scene) {
+  return build_scene(with(Options(), {{"scene", scene}, {"kernel-set", "general"}}));
+}
+
+TEST_P(OptixWavesOf, TrianglesGiveTheSerialImage) { expect_equal(made("boxes")); }
+TEST_P(OptixWavesOf, InstancesGiveTheSerialImage) { expect_equal(made("instances:20")); }
+
+TEST_P(OptixWavesOf, MediaGiveTheSerialImage) { expect_equal(filled_glasses(false)); }
+
+TEST_P(OptixWavesOf, MasksGiveTheSerialImage) {
+  if (GetParam() == OptixHits::built_in) GTEST_SKIP() << "masks are judged by our programs alone";
+  expect_equal(masked_room());
+  expect_equal(limited_room());
+  expect_equal(filled_glasses(true));
+}
+
+}  // namespace
+}  // namespace pt
