@@ -75,6 +75,8 @@ TEST(Doctor, NamesEachFaultAlone) {
   EXPECT_EQ(faulty([](M m) { m.cuda.gpus[0].free_memory = 1 << 29; }), Names{"warning GPU cuda:0"});
   EXPECT_EQ(faulty([](M m) { m.cuda.gpus[0].major = 8; }), Names{"missing code for cuda:0"});
   EXPECT_EQ(faulty([](M m) { m.cuda.gpus[0].major = 10; }), Names{"warning code for cuda:0"});
+  EXPECT_EQ(faulty([](M m) { m.cuda.optix_problem = "no library"; }), Names{"warning OptiX"});
+  EXPECT_EQ(faulty([](M m) { m.cuda.optix = "ABI 87"; }), Names{});
   EXPECT_EQ(faulty([](M m) { m.cuda.cupti = ""; }), Names{"warning counters"});
   EXPECT_EQ(faulty([](M m) { m.driver.counters_restricted = true; }), Names{"warning counters"});
   EXPECT_EQ(faulty([](M m) { m.driver.counters_restricted = m.is_admin = true; }), Names{});

@@ -2,6 +2,8 @@
 #include <dlfcn.h>
 
 #include "app/doctor/doctor.h"
+#include "common/accel/trace_optix/optix_code.h"
+#include "common/accel/trace_optix/optix_library.h"
 #include "common/device/cuda/counter_session_cuda.h"
 
 namespace pt {
@@ -49,6 +51,21 @@ std::string find_cupti() {
   return "";
 }
 
+/// On the device used last.
+void read_optix(CudaFacts& facts) {
+  try {
+    const auto library = std::make_shared<const OptixLibrary>();
+    const unsigned version = OptixContext(library).rtcore_version();
+    facts.optix = library->path() + ", ABI " + std::to_string(optix::abi_version) + ", " +
+                  (version == 0 ? "no RT cores: it traces by software"
+                                : "RT cores of version " + std::to_string(version / 10) + "." +
+                                      std::to_string(version % 10));
+    if (optix_ray_code().empty()) facts.optix_problem = "ptexp was built without it (PTEXP_OPTIX)";
+  } catch (const std::exception& error) {
+    facts.optix_problem = error.what();
+  }
+}
+
 }  // namespace
 
 CudaFacts read_cuda() {
@@ -61,6 +78,7 @@ CudaFacts read_cuda() {
   facts.problem = problem_of(cudaGetDeviceCount(&count));
   for (int i = 0; facts.problem.empty() && i < count; ++i) facts.gpus.push_back(read_gpu(i));
   facts.cupti = find_cupti();
+  if (!facts.gpus.empty()) read_optix(facts);
   return facts;
 }
 

@@ -28,6 +28,7 @@ struct CudaFacts {
   std::string problem;                     ///< why no GPU was found
   std::vector<GpuFacts> gpus;
   std::string cupti;  ///< the library that --counters would load; empty: none was found
+  std::string optix, optix_problem;  ///< what --accel optix would use, or why it cannot
 };
 
 struct MpiFacts {

@@ -123,6 +123,13 @@ Check check_counters(const Machine& machine) {
           ""};
 }
 
+Check check_optix(const CudaFacts& cuda) {
+  if (cuda.optix_problem.empty()) return {"OptiX", Health::ok, cuda.optix, ""};
+  return {"OptiX", Health::warning, cuda.optix_problem,
+          "only --accel optix needs it: install all of NVIDIA's driver (in a container: "
+          "NVIDIA_DRIVER_CAPABILITIES=all), 535 or newer"};
+}
+
 }  // namespace
 
 GpuCode code_for(const std::string& architectures, int major, int minor) {
@@ -164,6 +171,7 @@ void add_gpu_checks(const Machine& machine, std::vector<Check>& checks) {
     if (cuda.gpus[i].major > 0) checks.push_back(check_code(cuda.gpus[i], i, architectures));
   }
   checks.push_back(check_counters(machine));
+  if (!cuda.optix.empty() || !cuda.optix_problem.empty()) checks.push_back(check_optix(cuda));
 }
 
 }  // namespace pt

@@ -30,6 +30,15 @@ std::string shown(const std::string& value) { return value.empty() ? "none" : va
 /// Options of earlier programs that never changed an image.
 constexpr std::string_view former_options[] = {"ptexp.option.display", "ptexp.option.shade"};
 
+/// Whether OptiX's own hits are in the film, which may have other bits than ours.
+bool has_foreign_hits(const Options& options) {
+  return options.accel == AccelKind::optix && options.optix_hits == OptixHits::built_in;
+}
+bool has_foreign_hits(const ImageMetadata& header) {
+  return value_in(header, "ptexp.option.accel") == to_string(AccelKind::optix) &&
+         value_in(header, "ptexp.option.optix_hits") == to_string(OptixHits::built_in);
+}
+
 }  // namespace
 
 ImageMetadata film_header(const Options& options, const std::string& scene_hash,
@@ -116,10 +125,17 @@ void check_same_render(const ImageMetadata& a, const std::string& file_a, const 
   for (const OptionEntry& entry : option_list()) {
     if (determines_image(entry)) check(key_of(entry), "--" + entry.name);
   }
+  if (has_foreign_hits(a) != has_foreign_hits(b)) {
+    throw Error(fmt::format(
+        "{}: --accel optix --optix-hits built-in, but {} has other hits; expected films of one "
+        "render",
+        has_foreign_hits(a) ? file_a : file_b, has_foreign_hits(a) ? file_b : file_a));
+  }
 }
 
 void apply_settings(const std::vector<Setting>& settings, const std::string& file,
                     Options& options) {
+  const bool foreign = has_foreign_hits(options);
   for (const auto& [entry, value] : settings) {
     const std::string before = entry->text(options);
     entry->set(options, value);
@@ -130,6 +146,11 @@ void apply_settings(const std::vector<Setting>& settings, const std::string& fil
                     "the same, or a new render",
                     entry->name, value, file, shown(before)));
   }
+  if (has_foreign_hits(options) == foreign) return;
+  throw Error(
+      fmt::format("{} was begun {} --accel optix --optix-hits built-in, whose hits may have other "
+                  "bits; expected the same, or a new render",
+                  file, foreign ? "with" : "without"));
 }
 
 }  // namespace pt

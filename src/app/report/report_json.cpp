@@ -223,6 +223,12 @@ std::string report_json(const Options& options, const RenderReport& report) {
                   {"primitives", report.primitives},
                   {"calibration", report.calibration},
                   {"exposure", report.exposure ? Json(*report.exposure) : Json(nullptr)}};
+  if (report.optix) {
+    json["optix"] = {{"build_ms", report.optix->build_ms},
+                     {"bytes_built", report.optix->bytes_built},
+                     {"bytes_compacted", report.optix->bytes_compacted},
+                     {"rtcore_version", report.optix->rtcore_version}};
+  }
   json["plan"] = plan_json(report.plan);
   json["scene"] = scene_json(report.scene);
   json["complete"] = is_complete(options, report);
