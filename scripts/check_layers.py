@@ -23,7 +23,8 @@ HOST = ["options", "error"]
 BUILDERS = ["build", "embree", *SCENE_PARTS, *HOST]
 SCENE = ["loaders", "builtin", "prepare", "scene", "plan", "image", *BUILDERS]
 PHYSICS = ["transport", "prepare", "scene", *SCENE_PARTS]
-COMMON = ["rays", "block_wavefront", "device", "build_cuda", "cuda", "render", "film", "trace_cuda", "transport", *SCENE]
+COMMON = ["rays", "block_wavefront", "device", "build_cuda", "cuda", "render", "film", "trace_cuda", "optix",
+          "transport", *SCENE]
 SCHEDULES = ["serial", "megakernel", "wavefront"]
 
 LAYERS = [
@@ -65,6 +66,8 @@ LAYERS = [
     # Acceleration structures: what rays pass through, how it is built, and warps that persist.
     ("build_cuda", ["common/accel/build_cuda/*"], ["cuda", "build", *SCENE_PARTS, *HOST]),
     ("trace_cuda", ["common/accel/trace_cuda/*"], ["accel", *SHAPES]),
+    # What OptiX is told and runs, on a GPU or, in tests, on the host.
+    ("optix", ["common/accel/trace_optix/*"], ["cuda", "accel", *SHAPES, *HOST]),
     ("embree", ["common/accel/embree/*"], ["build", "accel", *SHAPES, *HOST]),
     ("build", ["common/accel/build/*"], ["accel", *SHAPES, *HOST]),
     ("accel", ["common/accel/*"], [*SHAPES, *HOST]),

@@ -1,12 +1,17 @@
 // OptiX as the tracer of the wavefront's queues.
 #pragma once
 
+#include <string>
+
 #include "common/accel/trace_optix/optix_pipeline.h"
 #include "common/accel/trace_optix/optix_structure.h"
 #include "common/options/stats.h"
 #include "wavefront/optix_queue.h"
 
 namespace pt {
+
+/// optix_queue_programs.cu in PTX; empty where ptexp was built without it.
+const std::string& optix_queue_code();
 
 class OptixTracer {
  public:

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "common/error/error.h"
-#include "wavefront/optix_code.h"
 #include "wavefront/wavefront.h"
 
 namespace pt {

@@ -332,6 +332,12 @@ TEST(FilmHeaders, NameWhatDiffersAndWhere) {
   for (const char* other : {"exposure", "spp", "threads", "strict", "output", "mode"}) {
     EXPECT_EQ(refusal((std::string("ptexp.option.") + other).c_str(), "8"), "");
   }
+  ImageMetadata optix = a;
+  optix["ptexp.option.accel"] = "optix", optix["ptexp.option.optix_hits"] = "custom";
+  check_same_render(a, "a.exr", optix, "o.exr");
+  optix["ptexp.option.optix_hits"] = "built-in";
+  expect_error([&] { check_same_render(a, "a.exr", optix, "o.exr"); },
+               "o.exr: --accel optix --optix-hits built-in, but a.exr has other hits" + end);
   ImageMetadata old = a;
   old["ptexp.film_version"] = "0", old["ptexp.version"] = "0.0.3";
   expect_error([&] { options_in_header(old, "o.exr"); },

@@ -7,7 +7,6 @@
 #include "accel/hard_hits.h"
 #include "accel/instance_crowds.h"
 #include "accel/instanced_meshes.h"
-#include "common/accel/trace_optix/optix_code.h"
 #include "common/accel/trace_optix/optix_memory_cuda.h"
 #include "common/accel/trace_optix/optix_pipeline.h"
 #include "common/accel/trace_optix/optix_rays.h"

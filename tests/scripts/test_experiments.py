@@ -34,7 +34,7 @@ from lib.harness import Configuration, Experiment, Plot  # noqa: E402
 
 SCRIPTS = sorted(path.stem for path in (ROOT / "experiments").glob("*.py")
                  if "harness.main(" in path.read_text(encoding="utf-8"))
-NEED_GPU = ["block_size", "counters", "gpu_size", "law"]
+NEED_GPU = ["block_size", "counters", "gpu_size", "hardware", "law"]
 GPU_IN_PART = ["scene_memory"]  # more than half of its rows are refused on a CPU
 NEED_TWO_BUILDS = ["compare_builds"]  # test_harness.py runs it
 NEED_COUNTING_BUILD = ["divergence"]

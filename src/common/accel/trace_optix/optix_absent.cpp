@@ -1,5 +1,5 @@
 // Built instead of optix_code.cpp where CMake makes no modules for OptiX (PTEXP_OPTIX).
-#include "common/accel/trace_optix/optix_code.h"
+#include "common/accel/trace_optix/optix_rays.h"
 
 namespace pt {
 

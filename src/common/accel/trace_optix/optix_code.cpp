@@ -1,5 +1,5 @@
 // The modules for OptiX, compiled to PTX by CMakeLists.txt.
-#include "common/accel/trace_optix/optix_code.h"
+#include "common/accel/trace_optix/optix_rays.h"
 
 namespace pt {
 namespace {

@@ -7,7 +7,7 @@
 #define PT_OPTIX_FUNCTION __device__ __forceinline__
 
 #include "common/accel/trace_optix/optix_abi.h"
-#include "common/accel/trace_optix/optix_payload.h"
+#include "common/accel/trace_optix/optix_scene.h"
 #include "common/geometry/ray.h"
 
 namespace pt::optix {

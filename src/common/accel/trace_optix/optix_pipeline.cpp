@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "common/accel/trace_optix/optix_payload.h"
+#include "common/accel/trace_optix/optix_scene.h"
 #include "common/error/error.h"
 
 namespace pt {

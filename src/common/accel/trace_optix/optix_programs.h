@@ -5,7 +5,6 @@
 // OptiX on the host. PT_OPTIX_FUNCTION is how its functions are declared.
 #pragma once
 
-#include "common/accel/trace_optix/optix_payload.h"
 #include "common/accel/trace_optix/optix_scene.h"
 #include "common/accel/traverse_cwbvh.h"
 #include "common/choices/optix_hits.h"

@@ -1,10 +1,15 @@
 // Arrays of rays traced by OptiX.
 #pragma once
 
+#include <string>
+
 #include "common/accel/ray_record.h"
 #include "common/accel/trace_optix/optix_programs.h"
 
 namespace pt {
+
+/// optix_ray_programs.cu in PTX; empty where ptexp was built without it.
+const std::string& optix_ray_code();
 
 /// The launch parameters of optix_ray_programs.cu.
 struct OptixRayParams {

@@ -1,5 +1,9 @@
-// What OptiX's programs know of a scene, and how far a traversal looks; for host and device.
+// What OptiX's programs know of a scene, how far a traversal looks, and what a ray carries through
+// them; for host and device.
 #pragma once
+
+#include <cstring>
+#include <type_traits>
 
 #include "common/accel/trace_optix/optix_abi.h"
 #include "common/accel/triangle_query.h"
@@ -48,6 +52,30 @@ PT_HD bool offer_candidate(const TriangleTree& tree, const Ray& ray, std::uint32
   if (visit.is_empty) return false;
   return offer_slots(tree, make_triangle_ray(visit.ray.origin, visit.ray.direction),
                      record.first_slot + primitive, 1, visit, instance, query);
+}
+
+/// How many words a ray carries: a query of triangle_query.h, word by word.
+inline constexpr int optix_payload_words = 5;
+
+/// Records of the hit programs, counted from the first (OptixPipeline).
+enum OptixRecord : unsigned { optix_record_closest, optix_record_any, optix_record_ties };
+
+struct OptixPayload {
+  std::uint32_t word[optix_payload_words];
+};
+
+template <class Query>
+PT_HD OptixPayload to_payload(const Query& query) {
+  static_assert(std::is_trivially_copyable_v<Query> && sizeof(Query) <= sizeof(OptixPayload));
+  OptixPayload payload{};
+  memcpy(&payload, static_cast<const void*>(&query), sizeof query);
+  return payload;
+}
+
+/// `query`: any, whose place is taken.
+template <class Query>
+PT_HD void from_payload(const OptixPayload& payload, Query& query) {
+  memcpy(static_cast<void*>(&query), &payload, sizeof query);
 }
 
 }  // namespace pt

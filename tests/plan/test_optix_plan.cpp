@@ -1,0 +1,118 @@
+// What --accel optix decides, and what it refuses.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "app/options/option_list.h"
+#include "common/error/error.h"
+#include "common/plan/execution_plan.h"
+
+namespace pt {
+namespace {
+
+using Choices = std::map<std::string, std::string>;
+
+SceneProperties mesh() {
+  SceneProperties scene;
+  scene.triangles = 1000, scene.bsdf_kinds = 1;
+  return scene;
+}
+
+DeviceProperties gpu() {
+  DeviceProperties device;
+  device.is_cuda = true, device.block_shared_bytes = 227 * 1024;
+  return device;
+}
+
+ExecutionPlan plan_of(const Choices& settings, const SceneProperties& scene = mesh(),
+                      const DeviceProperties& device = gpu()) {
+  Options options;
+  options.accel = AccelKind::optix;
+  for (const auto& [name, value] : settings) find_option(name).set(options, value);
+  return plan_execution(options, scene, device);
+}
+
+std::string refusal(const Choices& settings, const SceneProperties& scene = mesh(),
+                    const DeviceProperties& device = gpu()) {
+  try {
+    plan_of(settings, scene, device);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(OptixPlan, TracesTheQueuesOfWavesThatTheHostLaunches) {
+  const ExecutionPlan plan = plan_of({});
+  EXPECT_TRUE(plan.traces_by_optix);
+  EXPECT_EQ(plan.mode, Mode::wavefront);
+  EXPECT_EQ(plan.accel, Accel::cwbvh);
+  EXPECT_TRUE(plan.persistent_warps);
+  EXPECT_FALSE(plan.uses_graph);
+  EXPECT_EQ(plan.finish_paths, 0u);
+  EXPECT_FALSE(plan.finishes_in_blocks);
+  EXPECT_EQ(plan.optix_hits, OptixHits::custom);
+  std::map<std::string, std::string> decided, reasons;
+  for (const Decision& one : plan.decisions)
+    decided[one.option] = one.value, reasons[one.option] = one.reason;
+  EXPECT_EQ(decided["accel"], "optix");
+  EXPECT_EQ(decided["optix-hits"], "custom");
+  EXPECT_EQ(reasons["optix-hits"], "our test decides: hits are our trees'");
+  EXPECT_EQ(decided["schedule"], "host");
+  EXPECT_EQ(reasons["schedule"], "a launch of OptiX is not recorded in a graph");
+}
+
+TEST(OptixPlan, IsNeverChosenByItself) {
+  for (const char* mode : {"auto", "wavefront", "megakernel"})
+    EXPECT_FALSE(plan_of({{"accel", "auto"}, {"mode", mode}}).traces_by_optix);
+}
+
+TEST(OptixPlan, TakesQuadsAsTrianglesAndInstances) {
+  SceneProperties quads;
+  quads.quads = 12, quads.is_primitive_only = true, quads.bsdf_kinds = 1;
+  EXPECT_TRUE(plan_of({}, quads).traces_by_optix);
+  SceneProperties forest = mesh();
+  forest.instances = 20;
+  EXPECT_TRUE(plan_of({{"optix-hits", "built-in"}}, forest).traces_by_optix);
+}
+
+TEST(OptixPlan, RefusesWhatItCannotTrace) {
+  SceneProperties scene = mesh();
+  scene.name = "room";
+  DeviceProperties cpu;
+  cpu.threads = 4;
+  EXPECT_EQ(refusal({}, scene, cpu),
+            "--accel optix: OptiX runs on NVIDIA's GPUs; expected --device cuda");
+  EXPECT_EQ(refusal({{"mode", "megakernel"}}, scene),
+            "--accel optix: OptiX traces its queues; expected --mode wavefront, not megakernel");
+  EXPECT_EQ(refusal({{"stages", "fused"}}, scene),
+            "--accel optix: fused stages have no queue; expected --stages split");
+  EXPECT_EQ(refusal({{"persistent", "off"}}, scene),
+            "--accel optix: whole queues are traced; expected --persistent on");
+  EXPECT_EQ(refusal({{"schedule", "graph"}}, scene),
+            "--accel optix: a launch of OptiX is not recorded in a graph; expected --schedule "
+            "host");
+  EXPECT_EQ(refusal({{"finish-paths", "7"}}, scene),
+            "--accel optix: only waves have their rays traced by OptiX; expected --finish-paths "
+            "0");
+  EXPECT_EQ(refusal({{"counters", "on"}}, scene),
+            "--accel optix: OptiX's kernels are not counted; expected no --counters");
+  EXPECT_NE(refusal({{"compaction", "cub"}}, scene).find("--compaction atomic"), std::string::npos);
+  SceneProperties masked = scene, open = scene, spheres = scene;
+  masked.has_masks = true;
+  EXPECT_EQ(refusal({}, masked), "");
+  EXPECT_EQ(refusal({{"optix-hits", "built-in"}}, masked),
+            "--accel optix: only our programs judge masks; expected --optix-hits custom or "
+            "any-hit");
+  masked.instances = 3;
+  EXPECT_NE(refusal({}, masked).find("scene 'room' has no kernel for it"), std::string::npos);
+  open.has_media = open.has_open_boundaries = true;
+  EXPECT_NE(refusal({}, open).find("scene 'room' has no kernel for it"), std::string::npos);
+  spheres.spheres = 3;
+  EXPECT_EQ(refusal({}, spheres),
+            "--accel optix: only triangles and quads are traced by OptiX; scene 'room' has 3 "
+            "spheres");
+}
+
+}  // namespace
+}  // namespace pt
