@@ -90,13 +90,6 @@ PT_HD void start_path(const Scene& scene, const StageContext<Source>& context, s
   }
 }
 
-PT_HD void add_radiance(const SampleBuffer& samples, std::uint32_t path_index,
-                        const Color& radiance) {
-  if (is_black(radiance)) return;
-  Color& sum = samples.samples[path_index].radiance;
-  sum = add_rounded(sum, radiance);
-}
-
 /// The sink (transport/path_step.h) of all stages: keeps a path in its slot of the pool, and its
 /// radiance in its sample. Without lights nothing is added before a path ends, and its sample need
 /// not be read. `streams`: takes results as shading finds them (StreamingShading), to shorten live

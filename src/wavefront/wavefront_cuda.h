@@ -6,7 +6,7 @@
 #include "common/device/cuda/cuda_renderer.cuh"
 #include "wavefront/compaction/compaction_cuda.h"
 #include "wavefront/loop.h"
-#include "wavefront/optix_tracer.h"
+#include "wavefront/optix/optix_tracer.h"
 #include "wavefront/pool/stage_bytes.h"
 
 namespace pt {

@@ -8,8 +8,8 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SRC = ROOT / "src"
 
-FILES_MAX = 637
-LINES_MAX = 84_100
+FILES_MAX = 663
+LINES_MAX = 86_200
 FOLDER_FILES_MAX = 25
 MEDIAN_LINES_MIN = 95
 LOOP_LINES_MAX = 60

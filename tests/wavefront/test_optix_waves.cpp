@@ -9,7 +9,7 @@
 #include "scene/masked_room.h"
 #include "scene/mixed_scene.h"
 #include "wavefront/loop.h"
-#include "wavefront/optix_tracer.h"
+#include "wavefront/optix/optix_tracer.h"
 #include "wavefront/run_stage_cpu.h"
 
 namespace pt {
@@ -78,10 +78,10 @@ class OptixWaves : public CpuRenderer {
   static constexpr bool traces_queues = true;
   bool traces_queues_here() const { return true; }
   void trace_queue(const StageQueues& queues, const SampleBuffer& samples) {
-    tracer_.trace_queue(scene_, buffers_.pool, queues, samples);
+    tracer_.trace_queue(scene_, buffers_.pool, {queues.slots, queues.count}, samples);
   }
   void trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples) {
-    tracer_.trace_shadow_queue(scene_, buffers_.pool, queues, samples);
+    tracer_.trace_shadow_queue(scene_, buffers_.pool, {queues.slots, queues.count}, samples);
   }
   static constexpr bool flies_queues = false;
   template <class Wave>

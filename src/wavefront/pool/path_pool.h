@@ -313,4 +313,12 @@ struct PathPool {
   }
 };
 
+/// Adds to the path's sample.
+PT_HD void add_radiance(const SampleBuffer& samples, std::uint32_t path_index,
+                        const Color& radiance) {
+  if (is_black(radiance)) return;
+  Color& sum = samples.samples[path_index].radiance;
+  sum = add_rounded(sum, radiance);
+}
+
 }  // namespace pt

@@ -1,6 +1,6 @@
 // The queues of the wavefront: a module for OptiX, compiled to PTX alone.
 #include "common/accel/trace_optix/optix_intrinsics.cuh"
-#include "wavefront/optix_queue.h"
+#include "wavefront/optix/optix_queue.h"
 
 /// Memory without a constructor, which a variable in constant memory cannot have.
 union OptixQueueMemory {

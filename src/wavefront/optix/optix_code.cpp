@@ -1,5 +1,5 @@
 // The module for OptiX, compiled to PTX by CMakeLists.txt.
-#include "wavefront/optix_tracer.h"
+#include "wavefront/optix/optix_tracer.h"
 
 namespace pt {
 namespace {

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "common/accel/trace_optix/optix_programs.h"
-#include "wavefront/wave_buffers.h"
+#include "common/scene/data/scene.h"
+#include "common/transport/mask.h"
+#include "wavefront/pool/path_pool.h"
 
 namespace pt {
 

@@ -1,4 +1,4 @@
-#include "wavefront/optix_tracer.h"
+#include "wavefront/optix/optix_tracer.h"
 
 #include <algorithm>
 
@@ -15,13 +15,13 @@ OptixTracer::OptixTracer(OptixMemory& memory, const Scene& scene, bool has_masks
                 scene.triangles.instance_count > 0) {}
 
 void OptixTracer::launch(OptixPipeline::Launch kind, const Scene& scene, const PathPool& pool,
-                         const StageQueues& queues, const SampleBuffer& samples) {
+                         const OptixQueue& queue, const SampleBuffer& samples) {
   const OptixQueueParams params{.scene = optix_scene(scene.triangles, structure_),
                                 .world = scene,
                                 .has_masks = has_masks_,
                                 .pool = pool,
-                                .slots = queues.slots,
-                                .count = queues.count,
+                                .slots = queue.slots,
+                                .count = queue.count,
                                 .samples = samples};
   pipeline_.launch(kind, &params, std::min(pool.slot_count, optix_width_max));
 }

@@ -6,12 +6,18 @@
 #include "common/accel/trace_optix/optix_pipeline.h"
 #include "common/accel/trace_optix/optix_structure.h"
 #include "common/options/stats.h"
-#include "wavefront/optix_queue.h"
+#include "wavefront/optix/optix_queue.h"
 
 namespace pt {
 
 /// optix_queue_programs.cu in PTX; empty where ptexp was built without it.
 const std::string& optix_queue_code();
+
+/// A queue of slots in the device's memory: the first *count of them.
+struct OptixQueue {
+  const std::uint32_t* slots;
+  const std::uint32_t* count;
+};
 
 class OptixTracer {
  public:
@@ -22,20 +28,20 @@ class OptixTracer {
 
   /// Enqueue launches over a queue: the next hit of each path is stored; light that arrives is
   /// added.
-  void trace_queue(const Scene& scene, const PathPool& pool, const StageQueues& queues,
+  void trace_queue(const Scene& scene, const PathPool& pool, const OptixQueue& queue,
                    const SampleBuffer& samples) {
-    launch(OptixPipeline::closest, scene, pool, queues, samples);
+    launch(OptixPipeline::closest, scene, pool, queue, samples);
   }
-  void trace_shadow_queue(const Scene& scene, const PathPool& pool, const StageQueues& queues,
+  void trace_shadow_queue(const Scene& scene, const PathPool& pool, const OptixQueue& queue,
                           const SampleBuffer& samples) {
-    launch(OptixPipeline::any, scene, pool, queues, samples);
+    launch(OptixPipeline::any, scene, pool, queue, samples);
   }
 
   OptixFacts facts() const;
 
  private:
   void launch(OptixPipeline::Launch kind, const Scene& scene, const PathPool& pool,
-              const StageQueues& queues, const SampleBuffer& samples);
+              const OptixQueue& queue, const SampleBuffer& samples);
 
   bool has_masks_;
   OptixContext context_;

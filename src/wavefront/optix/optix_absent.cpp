@@ -1,5 +1,5 @@
 // Built instead of optix_code.cpp where CMake makes no modules for OptiX (PTEXP_OPTIX).
-#include "wavefront/optix_tracer.h"
+#include "wavefront/optix/optix_tracer.h"
 
 namespace pt {
 
