@@ -75,20 +75,29 @@ struct Cloudlet {
   double radius;  ///< it has no part farther away
 };
 
-/// At random places, where they fade out within the cube. So many that they fill `percent` of it,
-/// if each 16 fill 2 % of what is left.
+/// At random places, where they fade out within the cube; so many that they fill `percent` of it,
+/// by an estimate from points: a cloud is as large as a ball of `active` times its radius.
 std::vector<Cloudlet> cloudlets_of(std::uint32_t side, float percent) {
-  const double sixteens = std::log1p(-0.01 * static_cast<double>(percent)) / std::log1p(-0.02);
-  const auto count = static_cast<std::size_t>(std::max(1.0, std::round(16 * sixteens)));
-  std::vector<Cloudlet> all;
+  constexpr double active = 0.51;
+  constexpr std::size_t most = 4000;
   std::uint32_t draw = 0;
   const auto uniform = [&] {
     return 2 * static_cast<double>(to_unit_float(combine_hash(cloud_seed, draw++))) - 1;
   };
-  while (all.size() < count) {
-    const double radius = cloudlet_radii[all.size() % std::size(cloudlet_radii)];
+  const auto point = [&] {
     const double x = uniform(), y = uniform(), z = uniform();
-    all.push_back({(1 - 12.0 / side - radius) * glm::dvec3(x, y, z), radius});
+    return glm::dvec3(x, y, z);
+  };
+  std::vector<Cloudlet> all;
+  std::vector<glm::dvec3> empty(8192);
+  const double wanted_empty = static_cast<double>(empty.size()) * (1 - 0.01 * double{percent});
+  while (all.size() < most && (all.empty() || static_cast<double>(empty.size()) > wanted_empty)) {
+    const double radius = cloudlet_radii[all.size() % std::size(cloudlet_radii)];
+    all.push_back({(1 - 12.0 / side - radius) * point(), radius});
+    if (all.size() == 1) std::ranges::generate(empty, point);
+    std::erase_if(empty, [&](const glm::dvec3& p) {
+      return glm::length(p - all.back().middle) < active * radius;
+    });
   }
   return all;
 }
@@ -206,8 +215,8 @@ CloudSettings parse_cloud(const SceneName& scene) {
     refuse_part(scene, 'A', albedo, "an albedo from 0 to 1", "cloud:N:T:A");
   }
   next_part(rest);  // "sparse"
-  if (has_fill && !read_part(rest, 0.1f, 50.0f, settings.percent)) {
-    refuse_part(scene, 'P', rest, "a share of the cube from 0.1 to 50 percent",
+  if (has_fill && !read_part(rest, 1.0f, 50.0f, settings.percent)) {
+    refuse_part(scene, 'P', rest, "a share of the cube from 1 to 50 percent",
                 "cloud:N:T:A:sparse:P");
   }
   return settings;
