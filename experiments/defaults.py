@@ -3,8 +3,7 @@
 
 The program chooses structure, kernel, stages and pool. What a user gets who names a scene and a
 mode, and the table to compare two devices by: `scripts/report results/a results/b`. `--only my.xml`
-asks for one's own scene alone, at its own size and depth, in a table of its own; `--only my.py` for
-the ptexp.Scene in the variable `scene` of a Python file.
+asks for one's own scene alone, at its own size and depth, in a table of its own.
 """
 import shlex
 import sys
@@ -13,7 +12,7 @@ from pathlib import Path
 from lib import harness
 from lib.description import HarnessError
 from lib.harness import Configuration, Experiment, Plot
-from lib.scene_files import add_scene_files, renderer_of, scene_files, short_name
+from lib.scene_files import add_scene_files, scene_files, short_name
 from lib.sentences import against, in_groups
 
 MODES = ["megakernel", "wavefront"]
@@ -51,7 +50,7 @@ def own_scenes(arguments):
 def own_configurations(arguments):
     size = "--width 32 --height 32 --spp 2" if arguments.quick else f"--spp {OWN_SPP}"
     return [Configuration(f"{name}: {mode}", f"--mode {mode} --scene {shlex.quote(path)} {size}",
-                          {"panel": name, "x": mode}, same_image=name, **renderer_of(path))
+                          {"panel": name, "x": mode}, same_image=name)
             for path, name in own_scenes(arguments) for mode in MODES]
 
 

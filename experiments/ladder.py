@@ -7,6 +7,7 @@ it takes by itself; the next one is plain, as the wavefront's first step is. The
 up to the last steps, because regeneration matters where slots are used again; triangles are in a
 binary tree up to there.
 """
+import shlex
 import sys
 
 from lib import harness
@@ -61,7 +62,7 @@ def configurations(arguments, device):
     def quick(options):
         return QUICK if arguments.quick and "--mode wavefront" in options else ""
     return [Configuration(
-        f"{scene}: {number} {step}", " ".join(with_options(f"{image} {options}", quick(options))),
+        f"{scene}: {number} {step}", shlex.join(with_options(f"{image} {options}", quick(options))),
         {"panel": scene, "x": f"{number} {step}", "gain": ""}, same_image=scene)
             for scene, image in images_of(arguments).items()
             for number, (step, options) in enumerate(steps_of(scene, device))]

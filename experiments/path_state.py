@@ -9,6 +9,7 @@ thread) are those of the kernel that shades; with --counters `predicted` and `co
 that a ray moves between multiprocessors and L2. A GPU needs a build with PTEXP_PATH_STATE; what has
 no kernel, the loop in media for example, is a refused row.
 """
+import shlex
 import sys
 
 from lib import harness
@@ -49,7 +50,7 @@ def add_arguments(parser):
 
 def configurations(arguments, device):
     scenes = QUICK if arguments.quick else {
-        **SCENES, **{short_name(path): f"--scene {path} {FILES}" for path in scene_files(arguments)}}
+        **SCENES, **{short_name(path): f"--scene {shlex.quote(path)} {FILES}" for path in scene_files(arguments)}}
     on_gpu = device.kind == "cuda"
     counts = " --counters" if on_gpu and arguments.counters else ""
     return [Configuration(f"{scene}: {mode}, {size} bytes",

@@ -4,6 +4,7 @@
 Also the promises for one H200: the Cornell box and a statue of a million triangles. Scene files may
 be named as further arguments of --scenes.
 """
+import shlex
 import sys
 
 from lib import harness
@@ -50,7 +51,7 @@ def configurations(arguments, device):
                   for scene, size, _, target in scenes]
     return [Configuration(
         f"{short_name(scene)}: {mode}, {way}",
-        f"--mode {mode} --scene {scene} {options} --width {size} --height {size} --spp {spp} "
+        f"--mode {mode} --scene {shlex.quote(scene)} {options} --width {size} --height {size} --spp {spp} "
         f"--max-depth {DEPTH}",
         {"panel": short_name(scene), "x": f"{mode}, {way}", "target_msamples_per_s": target or "",
          "verdict": ""}, same_image=same_image(short_name(scene), options))

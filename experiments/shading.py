@@ -4,6 +4,7 @@
 The wavefront with and without the order, beside the megakernel. Scene files may be named as
 further arguments of --scenes.
 """
+import shlex
 import sys
 
 from lib import harness
@@ -36,7 +37,7 @@ def configurations(arguments, _device):
         for way, options in WAYS.items():
             rows.append(Configuration(
                 f"{name}: {way}",
-                f"--scene {scene} --width {size} --height {size} --spp {spp} "
+                f"--scene {shlex.quote(scene)} --width {size} --height {size} --spp {spp} "
                 f"--max-depth {DEPTH} {options}",
                 {"panel": name, "x": way, "target_msamples_per_s": promise or "", "verdict": ""},
                 same_image=name))

@@ -19,6 +19,7 @@ from lib.program import ROOT, check_gpu, find_device, find_program, run_ptexp  #
 from lib.provenance import now, provenance  # noqa: F401
 from lib.resident import way_of
 from lib.rounds import command_line, measure_all, plan, rows_of
+from lib.scene_files import by_python
 from lib.session import Session, constant_origin, is_complete, key_of, origin
 from lib.table import read_facts, read_rows, table_path, table_text, write_table  # noqa: F401
 
@@ -38,7 +39,7 @@ def session_of(experiment, arguments):
     program = find_program(arguments.ptexp)
     device = find_device(program, arguments.device)
     device.calibration = arguments.calibration
-    configurations = experiment.configurations(arguments, device)
+    configurations = list(map(by_python, experiment.configurations(arguments, device)))
     names = [configuration.name for configuration in configurations]
     if len(set(names)) < len(names):
         raise HarnessError(f"{experiment.name}: two configurations have one name")

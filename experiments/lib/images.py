@@ -1,5 +1,7 @@
 """One image of each kind of scene, of a size that fills a GPU: what experiments on execution
 render, unless they ask for sizes."""
+import shlex
+
 from lib.scene_files import scene_files, short_name
 
 IMAGES = {
@@ -18,5 +20,5 @@ def images_of(arguments):
     """{scene: ptexp's options}"""
     if arguments.quick:
         return QUICK
-    return {**IMAGES, **{short_name(path): f"--scene {path} {FILES}"
+    return {**IMAGES, **{short_name(path): f"--scene {shlex.quote(path)} {FILES}"
                          for path in scene_files(arguments)}}

@@ -1,13 +1,17 @@
 """Scene files as further arguments of an experiment."""
+import dataclasses
 import shlex
 import sys
 from pathlib import Path
+
+from lib.description import HarnessError
 
 
 def add_scene_files(parser):
     """An experiment's `add_arguments`."""
     parser.add_argument("--scenes", nargs="*", default=[], metavar="FILE",
-                        help="scene files to measure besides the built-in scenes")
+                        help="scene files to measure besides the built-in scenes; of a Python file "
+                             "(.py) the ptexp.Scene in its variable `scene`")
 
 
 def scene_files(arguments):
@@ -15,12 +19,17 @@ def scene_files(arguments):
     return [str(Path(path).resolve()) for path in arguments.scenes]
 
 
-def renderer_of(scene):
-    """Of a Python file that makes its scene in memory: what renders it instead of ptexp, as a
-    Configuration has it; of others nothing."""
-    if not scene.endswith(".py"):
-        return {}
-    return {"launcher": shlex.quote(sys.executable), "program": str(Path(__file__).with_name("python_scene.py"))}
+def by_python(configuration):
+    """The configuration; where its scene is made in memory by a Python file, python_scene.py renders
+    it instead of ptexp. Raises HarnessError where that cannot be."""
+    words = shlex.split(configuration.arguments)
+    scene = next((scene for name, scene in zip(words, words[1:]) if name == "--scene"), "")
+    if not configuration.renders or not scene.endswith(".py"):
+        return configuration
+    if configuration.program:
+        raise HarnessError(f"{scene}: expected a scene file that ptexp reads, since the experiment names the program")
+    return dataclasses.replace(configuration, launcher=f"{configuration.launcher} {shlex.quote(sys.executable)}".strip(),
+                               program=str(Path(__file__).with_name("python_scene.py")))
 
 
 def short_name(scene):

@@ -29,8 +29,10 @@ from lib import harness  # noqa: E402
 from lib import pooling  # noqa: E402
 from lib import program  # noqa: E402
 from lib import resident  # noqa: E402
+from lib import scene_files  # noqa: E402
 from lib import table  # noqa: E402
 from lib.harness import Configuration, Experiment, Plot  # noqa: E402
+from lib.options import parse_arguments  # noqa: E402
 
 SCRIPTS = sorted(path.stem for path in (ROOT / "experiments").glob("*.py")
                  if "harness.main(" in path.read_text(encoding="utf-8"))
@@ -61,6 +63,44 @@ case "$1" in
   *) kill -SEGV $$ ;;
 esac
 """
+
+
+class PythonScenes(unittest.TestCase):
+    """What a Python file makes in memory is rendered by Python, whatever the experiment."""
+
+    def configurations_of(self, name, scene):
+        experiment = importlib.import_module(name).EXPERIMENT
+        device = types.SimpleNamespace(choice="cuda:0", kind="cuda", gpus=1, calibration="none", name="GPU",
+                                       multiprocessors=132)
+        with tempfile.TemporaryDirectory(prefix="ptexp ") as folder, \
+                mock.patch.object(harness, "find_program", return_value=PTEXP), \
+                mock.patch.object(harness, "find_device", return_value=device), \
+                mock.patch.object(harness, "key_of", return_value=""):
+            arguments = parse_arguments(experiment, ["--scenes", scene, "--output", folder])
+            return harness.session_of(experiment, arguments).configurations
+
+    def test_every_experiment_that_takes_scene_files(self):
+        takers = [name for name in SCRIPTS if "add_scene_files" in
+                  (ROOT / "experiments" / f"{name}.py").read_text(encoding="utf-8")]
+        self.assertGreater(len(takers), 9)
+        for name in takers:
+            with self.subTest(name):
+                for scene, is_python in (("/my scenes/own.py", True), ("/my scenes/own.xml", False)):
+                    own = [c for c in self.configurations_of(name, scene) if "/my scenes/" in c.arguments]
+                    self.assertTrue(own)
+                    for configuration in own:
+                        words = harness.shlex.split(configuration.arguments)
+                        self.assertIn(scene, words, configuration.arguments)
+                        self.assertEqual(Path(configuration.program).name, "python_scene.py" if is_python else "")
+
+    def test_beside_a_launcher_and_another_program(self):
+        make = Configuration("a", "--scene own.py", launcher="env A=1")
+        self.assertEqual(scene_files.by_python(make).launcher, f"env A=1 {sys.executable}")
+        self.assertEqual(make.program, "")
+        with self.assertRaisesRegex(harness.HarnessError, "own.py: expected a scene file that ptexp reads"):
+            scene_files.by_python(Configuration("a", "--scene own.py", program="/usr/bin/other"))
+        tells = Configuration("a", "--scene own.py", renders=False)
+        self.assertIs(scene_files.by_python(tells), tells)
 
 
 class Experiments(unittest.TestCase):
