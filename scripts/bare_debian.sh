@@ -6,9 +6,10 @@
 # shellcheck disable=SC2034 # for those that source this
 debian_release=$(. /etc/os-release && printf '%s' "${VERSION_CODENAME:-}")
 
-# make_bare_debian RELEASE FOLDER: anew, from this machine's mirror.
+# make_bare_debian RELEASE FOLDER: anew, from this machine's mirror. The tree as debootstrap made it
+# and the packages that are installed into it later stay in build/bare_debian, for the next one.
 make_bare_debian() {
-  local release=$1 tree=$2 mirror file options=() script=()
+  local release=$1 tree=$2 kept=$root/build/bare_debian/$1 mirror file options=() script=()
   ((EUID == 0)) || die "root is needed: debootstrap and chroot"
   install_missing debootstrap
   # shellcheck disable=SC2016 # apt-get's own variables
@@ -24,12 +25,22 @@ make_bare_debian() {
 PTEXP_UBUNTU_MIRROR"
   remove_bare_debian "$tree"
   mkdir -p "$tree"
-  debootstrap --variant=minbase --include=ca-certificates "${options[@]}" "$release" "$tree" \
-    "$mirror" "${script[@]}"
+  mkdir -p "$kept/archives/partial"
+  if [[ -e $kept/tree.tar ]]; then
+    tar --extract --numeric-owner --file "$kept/tree.tar" --directory "$tree"
+  else
+    debootstrap --variant=minbase --include=ca-certificates "${options[@]}" "$release" "$tree" \
+      "$mirror" "${script[@]}"
+    if mountpoint --quiet "$tree/proc"; then umount "$tree/proc"; fi
+    tar --create --numeric-owner --one-file-system --file "$kept/tree.tar.new" --directory "$tree" .
+    mv "$kept/tree.tar.new" "$kept/tree.tar"
+  fi
   for file in /etc/apt/apt.conf.d/*proxy*; do # how this machine reaches its mirror
     [[ ! -e $file ]] || cp "$file" "$tree/etc/apt/apt.conf.d/"
   done
   mountpoint --quiet "$tree/proc" || mount -t proc proc "$tree/proc"
+  mount --bind "$kept/archives" "$tree/var/cache/apt/archives"
+  in_bare_debian "$tree" apt-get update # a kept tree's lists may be old
 }
 
 # in_bare_debian FOLDER COMMAND...
@@ -41,6 +52,9 @@ in_bare_debian() {
 
 # remove_bare_debian FOLDER: but not what is mounted there.
 remove_bare_debian() {
-  if mountpoint --quiet "$1/proc"; then umount "$1/proc"; fi
+  local folder
+  for folder in proc var/cache/apt/archives; do
+    if mountpoint --quiet "$1/$folder"; then umount "$1/$folder"; fi
+  done
   rm -rf --one-file-system "$1"
 }
