@@ -300,6 +300,27 @@ TEST(Calibration, AFileIsReplacedAtOnce) {
   expect_error([&] { store_calibration(calibration); }, file);
 }
 
+// A session renders often: the file's time and size tell that it is the one that was read.
+TEST(Calibration, AFileIsReadAgainWhenItHasChanged) {
+  const Cache cache;
+  const DeviceInfo gpu = planted_gpu();
+  const std::string file =
+      store_calibration(planted_calibration(calibration_key(gpu, with_threads(2))));
+  EXPECT_EQ(applied(gpu, "auto").scan_primitives, 33);
+  const std::string text = read_text(file);
+  const auto time = std::filesystem::last_write_time(file);
+  write_text(file, std::string(text.size(), ' '));
+  std::filesystem::last_write_time(file, time);
+  EXPECT_EQ(applied(gpu, "auto").scan_primitives, 33) << "read again";
+  std::filesystem::last_write_time(file, time + std::chrono::seconds(1));
+  EXPECT_EQ(applied(gpu, "auto"), PlanConstants()) << "not read again";
+  write_text(file, text + ' ');
+  std::filesystem::last_write_time(file, time);
+  EXPECT_EQ(applied(gpu, "auto").scan_primitives, 33);
+  std::filesystem::remove(file);
+  EXPECT_EQ(applied(gpu, "auto"), PlanConstants());
+}
+
 TEST(Calibration, ABrokenFileIsIgnoredWithOneWarning) {
   const Cache cache;
   const DeviceInfo gpu = planted_gpu();

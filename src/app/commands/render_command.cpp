@@ -41,8 +41,7 @@ std::vector<DeviceInfo> find_devices(Options& options, const GivenOptions& given
                                      const Ranks& ranks) {
   using Kind = DeviceChoice::Kind;
   const Kind wanted = options.device.kind;
-  std::vector<DeviceInfo> devices = choose_render_devices(options, given, &ranks);
-  apply_calibration(options, devices, print_warning);
+  std::vector<DeviceInfo> devices = calibrated_devices(options, given, print_warning, &ranks);
   if (options.quiet) return devices;
   for (const DeviceInfo& device : devices) {
     print("device {}: {} ({})\n", to_string(device.choice), limited(device, options.limits).name,

@@ -54,6 +54,11 @@ Calibration read_calibration(const std::string& file);
 /// that the options name.
 void apply_calibration(const Options& options, std::vector<DeviceInfo>& devices, const Warn& warn);
 
+/// Finds the devices of a render and gives them these constants: choose_render_devices
+/// (rank_setup.h), then apply_calibration.
+std::vector<DeviceInfo> calibrated_devices(Options& options, const GivenOptions& given,
+                                           const Warn& warn, const Ranks* ranks = nullptr);
+
 // Fitting. Each returns nothing where the times do not tell.
 
 /// Two ways for one size of work.

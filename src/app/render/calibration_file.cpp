@@ -5,11 +5,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "app/render/calibration.h"
+#include "app/render/rank_setup.h"
 #include "common/device/cpu/cpu_renderer.h"
 #include "common/error/error.h"
 #include "common/image/atomic_file.h"
@@ -108,13 +110,44 @@ void warn_once(const Warn& warn, const std::string& message) {
   if (warn && told.insert(message).second) warn(message);
 }
 
+/// As read_calibration; a file is read again when it has changed.
+class ReadFiles {
+ public:
+  Calibration get(const std::string& file) {
+    std::error_code none;  // then reading tells
+    const Version version{fs::last_write_time(file, none), fs::file_size(file, none)};
+    const std::lock_guard lock(mutex_);
+    if (const auto found = files_.find(file);
+        found != files_.end() && found->second.first == version)
+      return found->second.second;
+    Calibration calibration = read_calibration(file);
+    files_.insert_or_assign(file, std::pair(version, calibration));
+    return calibration;
+  }
+  /// It has been written.
+  void forget(const std::string& file) {
+    const std::lock_guard lock(mutex_);
+    files_.erase(file);
+  }
+
+ private:
+  using Version = std::pair<fs::file_time_type, std::uintmax_t>;
+  std::mutex mutex_;
+  std::map<std::string, std::pair<Version, Calibration>> files_;
+};
+
+ReadFiles& read_files() {
+  static ReadFiles files;
+  return files;
+}
+
 /// What the cache folder has for this device, or nothing.
 std::optional<Calibration> cached_calibration(const CalibrationKey& key, const Warn& warn) {
   const std::string file = calibration_path(key);
   std::error_code missing;
   if (file.empty() || !fs::exists(file, missing)) return std::nullopt;
   try {
-    Calibration found = read_calibration(file);
+    Calibration found = read_files().get(file);
     if (found.key == key) return found;
     throw Error(fmt::format("{}: is of {}; expected {}", file, key_text(found.key), key_text(key)));
   } catch (const Error& error) {
@@ -172,6 +205,7 @@ std::string store_calibration(const Calibration& calibration) {
   std::string file = writable_calibration_path(key);
   write_file_atomically(file,
                         json.dump(2, ' ', false, CalibrationJson::error_handler_t::replace) + '\n');
+  read_files().forget(file);
   return file;
 }
 
@@ -191,11 +225,18 @@ void apply_calibration(const Options& options, std::vector<DeviceInfo>& devices,
     if (options.calibration == "auto") {
       found = cached_calibration(key, warn);
     } else {
-      found = read_calibration(options.calibration);
+      found = read_files().get(options.calibration);
       if (found->key != key) found->constants.measured_on = found->key.device;
     }
     if (found) device.properties.constants = found->constants;
   }
+}
+
+std::vector<DeviceInfo> calibrated_devices(Options& options, const GivenOptions& given,
+                                           const Warn& warn, const Ranks* ranks) {
+  std::vector<DeviceInfo> devices = choose_render_devices(options, given, ranks);
+  apply_calibration(options, devices, warn);
+  return devices;
 }
 
 }  // namespace pt

@@ -143,8 +143,7 @@ bool RenderSession::update(Prepared& ready, const Options& options,
 RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, const Warn& warn,
                                                 ProcessClock& clock) {
   Options options = command.options;
-  std::vector<DeviceInfo> devices = choose_render_devices(options, command.given);
-  apply_calibration(options, devices, warn);
+  std::vector<DeviceInfo> devices = calibrated_devices(options, command.given, warn);
   clock.end(&ProcessTimes::devices);
   apply_defaults(source_.defaults, command.given, options);
   Keys keys = keys_of(options);
@@ -244,8 +243,7 @@ RenderPass RenderSession::add_pass(const RenderCommand& command, int samples,
 
 std::vector<Decision> RenderSession::plan(const RenderCommand& command) {
   Options options = command.options;
-  std::vector<DeviceInfo> devices = choose_render_devices(options, command.given);
-  apply_calibration(options, devices, {});
+  const std::vector<DeviceInfo> devices = calibrated_devices(options, command.given, {});
   apply_defaults(source_.defaults, command.given, options);
   SceneData scene = source_;
   resolve_scene(scene, options);
