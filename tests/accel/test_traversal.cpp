@@ -11,7 +11,7 @@ namespace {
 
 using Triangles = std::vector<Triangle>;
 
-Vec3 random_point(TestRandom& random, double size) {
+Vec3 point_within(TestRandom& random, double size) {
   return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
 }
 
@@ -23,8 +23,8 @@ Triangles soup(int count, float size, const Vec3& at) {
   TestRandom random(3);
   Triangles triangles;
   for (int i = 0; i < count; ++i) {
-    const Vec3 v = at + random_point(random, size);
-    add(triangles, v, v + random_point(random, 0.2f * size), v + random_point(random, 0.2f * size));
+    const Vec3 v = at + point_within(random, size);
+    add(triangles, v, v + point_within(random, 0.2f * size), v + point_within(random, 0.2f * size));
   }
   return triangles;
 }
@@ -53,9 +53,9 @@ Ray random_ray(TestRandom& random, const Triangles& triangles, const Bounds& all
     return random.bits() % 2 ? t.v0 : t.v2;
   };
   const float size = max_abs(all.max - all.min);
-  Vec3 origin = all.center() + random_point(random, size);
+  Vec3 origin = all.center() + point_within(random, size);
   if (random.bits() % 4 == 0) origin = vertex();
-  Vec3 direction = random_point(random, 1);
+  Vec3 direction = point_within(random, 1);
   if (random.bits() % 2 == 0) direction = vertex() - origin;
   const std::uint32_t zeros = random.bits() % 16;  // in a plane, along an axis, with either zero
   for (int i = 0; i < 3; ++i) {
@@ -130,8 +130,8 @@ TEST(Traversal, RaysFromFarAway) {
   TestRandom random(5);
   int hits = 0;
   for (int i = 0; i < 3000; ++i) {
-    const Vec3 origin = 1e5f * normalize(random_point(random, 1));
-    hits += expect_same<false>(trees, {origin, normalize(random_point(random, 1) - origin)}, 0,
+    const Vec3 origin = 1e5f * normalize(point_within(random, 1));
+    hits += expect_same<false>(trees, {origin, normalize(point_within(random, 1) - origin)}, 0,
                                infinite_distance);
   }
   EXPECT_GT(hits, 100);
@@ -146,7 +146,7 @@ TEST(Traversal, IsWatertight) {
   for (int i = 0; i < 5000; ++i) {
     const Triangle& t = floor[random.below(static_cast<std::uint32_t>(floor.size()))];
     if (max_abs(t.v0 - Vec3(0, 0, -3)) > 6 || max_abs(t.v1 - Vec3(0, 0, -3)) > 6) continue;
-    const Vec3 origin = random_point(random, 1);
+    const Vec3 origin = point_within(random, 1);
     const Ray ray{origin, t.v0 + random.unit() * (t.v1 - t.v0) - origin};
     EXPECT_EQ(expect_same<false>(trees, ray, 0, infinite_distance), 1);
   }
@@ -188,8 +188,8 @@ Group add_group(TestTrees& trees, Triangles triangles, std::uint32_t first_id) {
 Affine random_placement(TestRandom& random) {
   const Vec3 stretch = Vec3(0.3f) + random.unit() * Vec3(1, 2, 0.5f);
   const Vec3 mirror(random.bits() % 2 ? 1 : -1, 1, 1);
-  return translate(random_point(random, 6)) *
-         rotate(random_point(random, 1) + Vec3(0, 0, 2), 360.0f * random.unit()) *
+  return translate(point_within(random, 6)) *
+         rotate(point_within(random, 1) + Vec3(0, 0, 2), 360.0f * random.unit()) *
          scale(stretch * mirror);
 }
 
@@ -228,7 +228,7 @@ TEST(Traversal, Instances) {
   for (const std::uint32_t i : order.wide) trees.wide_instances.push_back(wide[i]);
   int hits = 0;
   for (int i = 0; i < 3000; ++i) {
-    Ray ray{random_point(random, 8), random_point(random, 1)};
+    Ray ray{point_within(random, 8), point_within(random, 1)};
     if (i % 4 == 0) ray.direction[i / 4 % 3] = 0;
     hits += expect_same<true>(trees, ray, 0, infinite_distance);
     if (HasFailure()) return;

@@ -17,21 +17,21 @@ class CudaSparseGrids : public CudaTest {
   }
 };
 
-Options gpu_options(const std::string& mode, const Settings& more = {}) {
+Options sparse_options(const std::string& mode, const Settings& more = {}) {
   return with(with(cloud_options(mode), {{"device", "cuda:0"}, {"width", "61"}}), more);
 }
 
 TEST_F(CudaSparseGrids, GiveTheImagesOfDenseOnesInAllModes) {
   const SceneData dense = sparse_fogs(VolumeStorage::dense),
                   sparse = sparse_fogs(VolumeStorage::sparse);
-  const Rendered expected = render_clouds(dense, gpu_options("megakernel"));
-  expect_plausible(expected, gpu_options("megakernel"));
+  const Rendered expected = render_clouds(dense, sparse_options("megakernel"));
+  expect_plausible(expected, sparse_options("megakernel"));
   for (const Options& options :
-       {gpu_options("megakernel"), gpu_options("wavefront"),
-        gpu_options("wavefront", {{"wave-collisions", "2"}}),
-        gpu_options("wavefront", {{"finish-paths", "0"}}),
-        gpu_options("wavefront", {{"stages", "fused"}}),
-        gpu_options("wavefront", {{"schedule", "host"}, {"persistent", "off"}})}) {
+       {sparse_options("megakernel"), sparse_options("wavefront"),
+        sparse_options("wavefront", {{"wave-collisions", "2"}}),
+        sparse_options("wavefront", {{"finish-paths", "0"}}),
+        sparse_options("wavefront", {{"stages", "fused"}}),
+        sparse_options("wavefront", {{"schedule", "host"}, {"persistent", "off"}})}) {
     SCOPED_TRACE(command_of(options));
     expect_same(render_clouds(sparse, options), expected);
   }
@@ -40,23 +40,23 @@ TEST_F(CudaSparseGrids, GiveTheImagesOfDenseOnesInAllModes) {
 // The dense one is traced by persistent warps, and its last paths by blocks.
 TEST_F(CudaSparseGrids, GiveTheImagesOfDenseOnesInGlass) {
   const Rendered expected =
-      render_clouds(sparse_glasses(VolumeStorage::dense), gpu_options("wavefront"));
+      render_clouds(sparse_glasses(VolumeStorage::dense), sparse_options("wavefront"));
   const SceneData sparse = sparse_glasses(VolumeStorage::sparse);
   for (const Options& options :
-       {gpu_options("megakernel"), gpu_options("wavefront"),
-        gpu_options("wavefront", {{"compaction", "cub"}, {"wave-collisions", "3"}})}) {
+       {sparse_options("megakernel"), sparse_options("wavefront"),
+        sparse_options("wavefront", {{"compaction", "cub"}, {"wave-collisions", "3"}})}) {
     SCOPED_TRACE(command_of(options));
     expect_same(render_clouds(sparse, options), expected);
   }
-  EXPECT_THROW(render_clouds(sparse, gpu_options("wavefront", {{"accel", "cwbvh"}})), Error);
+  EXPECT_THROW(render_clouds(sparse, sparse_options("wavefront", {{"accel", "cwbvh"}})), Error);
 }
 
 // The first hits look through media, too.
 TEST_F(CudaSparseGrids, GiveTheFeaturesOfDenseOnes) {
   const auto image = [](VolumeStorage storage) {
-    return render_clouds(
-        sparse_fogs(storage),
-        gpu_options("megakernel", {{"aov", "depth,collision,transmittance"}, {"output", "a.exr"}}));
+    return render_clouds(sparse_fogs(storage),
+                         sparse_options("megakernel", {{"aov", "depth,collision,transmittance"},
+                                                       {"output", "a.exr"}}));
   };
   const Rendered dense = image(VolumeStorage::dense), sparse = image(VolumeStorage::sparse);
   ASSERT_EQ(dense.image.layers.size(), 3u);
@@ -69,7 +69,7 @@ TEST_F(CudaSparseGrids, CloudsAreTheSameAsDenseOnes) {
   const auto image = [](VolumeStorage storage, const std::string& mode) {
     const CloudSettings settings{192, 20, 0.9f, true};
     return render_clouds(make_cloud_scene(settings, storage),
-                         gpu_options(mode, {{"width", "120"}, {"height", "80"}}));
+                         sparse_options(mode, {{"width", "120"}, {"height", "80"}}));
   };
   const Rendered expected = image(VolumeStorage::dense, "megakernel");
   expect_same(image(VolumeStorage::sparse, "megakernel"), expected);
