@@ -12,30 +12,30 @@ namespace {
 
 using Choices = std::map<std::string, std::string>;
 
-SceneProperties mesh() {
+SceneProperties triangle_scene() {
   SceneProperties scene;
   scene.triangles = 1000, scene.bsdf_kinds = 1;
   return scene;
 }
 
-DeviceProperties gpu() {
+DeviceProperties optix_gpu() {
   DeviceProperties device;
   device.is_cuda = true, device.block_shared_bytes = 227 * 1024;
   return device;
 }
 
-ExecutionPlan plan_of(const Choices& settings, const SceneProperties& scene = mesh(),
-                      const DeviceProperties& device = gpu()) {
+ExecutionPlan optix_plan(const Choices& settings, const SceneProperties& scene = triangle_scene(),
+                         const DeviceProperties& device = optix_gpu()) {
   Options options;
   options.accel = AccelKind::optix;
   for (const auto& [name, value] : settings) find_option(name).set(options, value);
   return plan_execution(options, scene, device);
 }
 
-std::string refusal(const Choices& settings, const SceneProperties& scene = mesh(),
-                    const DeviceProperties& device = gpu()) {
+std::string optix_refusal(const Choices& settings, const SceneProperties& scene = triangle_scene(),
+                          const DeviceProperties& device = optix_gpu()) {
   try {
-    plan_of(settings, scene, device);
+    optix_plan(settings, scene, device);
   } catch (const Error& error) {
     return error.what();
   }
@@ -43,7 +43,7 @@ std::string refusal(const Choices& settings, const SceneProperties& scene = mesh
 }
 
 TEST(OptixPlan, TracesTheQueuesOfWavesThatTheHostLaunches) {
-  const ExecutionPlan plan = plan_of({});
+  const ExecutionPlan plan = optix_plan({});
   EXPECT_TRUE(plan.traces_by_optix);
   EXPECT_EQ(plan.mode, Mode::wavefront);
   EXPECT_EQ(plan.accel, Accel::cwbvh);
@@ -64,52 +64,53 @@ TEST(OptixPlan, TracesTheQueuesOfWavesThatTheHostLaunches) {
 
 TEST(OptixPlan, IsNeverChosenByItself) {
   for (const char* mode : {"auto", "wavefront", "megakernel"})
-    EXPECT_FALSE(plan_of({{"accel", "auto"}, {"mode", mode}}).traces_by_optix);
+    EXPECT_FALSE(optix_plan({{"accel", "auto"}, {"mode", mode}}).traces_by_optix);
 }
 
 TEST(OptixPlan, TakesQuadsAsTrianglesAndInstances) {
   SceneProperties quads;
   quads.quads = 12, quads.is_primitive_only = true, quads.bsdf_kinds = 1;
-  EXPECT_TRUE(plan_of({}, quads).traces_by_optix);
-  SceneProperties forest = mesh();
+  EXPECT_TRUE(optix_plan({}, quads).traces_by_optix);
+  SceneProperties forest = triangle_scene();
   forest.instances = 20;
-  EXPECT_TRUE(plan_of({{"optix-hits", "built-in"}}, forest).traces_by_optix);
+  EXPECT_TRUE(optix_plan({{"optix-hits", "built-in"}}, forest).traces_by_optix);
 }
 
 TEST(OptixPlan, RefusesWhatItCannotTrace) {
-  SceneProperties scene = mesh();
+  SceneProperties scene = triangle_scene();
   scene.name = "room";
   DeviceProperties cpu;
   cpu.threads = 4;
-  EXPECT_EQ(refusal({}, scene, cpu),
+  EXPECT_EQ(optix_refusal({}, scene, cpu),
             "--accel optix: OptiX runs on NVIDIA's GPUs; expected --device cuda");
-  EXPECT_EQ(refusal({{"mode", "megakernel"}}, scene),
+  EXPECT_EQ(optix_refusal({{"mode", "megakernel"}}, scene),
             "--accel optix: OptiX traces its queues; expected --mode wavefront, not megakernel");
-  EXPECT_EQ(refusal({{"stages", "fused"}}, scene),
+  EXPECT_EQ(optix_refusal({{"stages", "fused"}}, scene),
             "--accel optix: fused stages have no queue; expected --stages split");
-  EXPECT_EQ(refusal({{"persistent", "off"}}, scene),
+  EXPECT_EQ(optix_refusal({{"persistent", "off"}}, scene),
             "--accel optix: whole queues are traced; expected --persistent on");
-  EXPECT_EQ(refusal({{"schedule", "graph"}}, scene),
+  EXPECT_EQ(optix_refusal({{"schedule", "graph"}}, scene),
             "--accel optix: a launch of OptiX is not recorded in a graph; expected --schedule "
             "host");
-  EXPECT_EQ(refusal({{"finish-paths", "7"}}, scene),
+  EXPECT_EQ(optix_refusal({{"finish-paths", "7"}}, scene),
             "--accel optix: only waves have their rays traced by OptiX; expected --finish-paths "
             "0");
-  EXPECT_EQ(refusal({{"counters", "on"}}, scene),
+  EXPECT_EQ(optix_refusal({{"counters", "on"}}, scene),
             "--accel optix: OptiX's kernels are not counted; expected no --counters");
-  EXPECT_NE(refusal({{"compaction", "cub"}}, scene).find("--compaction atomic"), std::string::npos);
+  EXPECT_NE(optix_refusal({{"compaction", "cub"}}, scene).find("--compaction atomic"),
+            std::string::npos);
   SceneProperties masked = scene, open = scene, spheres = scene;
   masked.has_masks = true;
-  EXPECT_EQ(refusal({}, masked), "");
-  EXPECT_EQ(refusal({{"optix-hits", "built-in"}}, masked),
+  EXPECT_EQ(optix_refusal({}, masked), "");
+  EXPECT_EQ(optix_refusal({{"optix-hits", "built-in"}}, masked),
             "--accel optix: only our programs judge masks; expected --optix-hits custom or "
             "any-hit");
   masked.instances = 3;
-  EXPECT_NE(refusal({}, masked).find("scene 'room' has no kernel for it"), std::string::npos);
+  EXPECT_NE(optix_refusal({}, masked).find("scene 'room' has no kernel for it"), std::string::npos);
   open.has_media = open.has_open_boundaries = true;
-  EXPECT_NE(refusal({}, open).find("scene 'room' has no kernel for it"), std::string::npos);
+  EXPECT_NE(optix_refusal({}, open).find("scene 'room' has no kernel for it"), std::string::npos);
   spheres.spheres = 3;
-  EXPECT_EQ(refusal({}, spheres),
+  EXPECT_EQ(optix_refusal({}, spheres),
             "--accel optix: only triangles and quads are traced by OptiX; scene 'room' has 3 "
             "spheres");
 }
