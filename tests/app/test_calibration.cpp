@@ -184,7 +184,7 @@ TEST(Calibration, OfAGpuFindsPlantedConstants) {
   EXPECT_NEAR(c.megakernel_sorting, 1.2, 1e-9);
   EXPECT_NEAR(c.megakernel_mesh, 0.8, 1e-9);
   EXPECT_NEAR(c.short_depth, 10, 1);
-  EXPECT_NEAR(std::sqrt(c.few_paths_multiprocessor * gpu.multiprocessors), 250, 5);
+  EXPECT_NEAR(std::sqrt(c.few_paths_multiprocessor * gpu.properties.multiprocessors), 250, 5);
   EXPECT_NEAR(c.scan_spheres_wavefront, 600, 5);
   EXPECT_NEAR(c.scan_spheres_megakernel, 400, 5);
   EXPECT_NEAR(c.constant_spheres, 100, 2);
