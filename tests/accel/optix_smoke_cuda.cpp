@@ -228,7 +228,7 @@ void try_case(const OptixContext& context, CudaOptixMemory& memory, cudaStream_t
       }))
     return;
   OptixRayParams params;
-  params.scene = {tree, structure->handle(), structure->reach().cull_margin};
+  params.scene = optix_scene(tree, *structure);
   params.rays.rays = arrays.upload(scene.rays);
   params.rays.count = ray_count;
   std::vector<HitRecord> results(ray_count, HitRecord{-7.0f, 7});

@@ -82,7 +82,6 @@ struct EmulatedApi {
   static std::uint32_t primitive_index() { return state().primitive; }
   static std::uint32_t instance_id() { return state().instance; }
   static float ray_t_max() { return state().t_max; }
-  static Ray world_ray() { return state().ray; }
   static std::uint32_t payload_word(int i) { return state().payload.word[i]; }
   static void set_payload_word(int i, std::uint32_t word) { state().payload.word[i] = word; }
   static void report_intersection(float t) {

@@ -47,18 +47,6 @@ struct DeviceApi {
     return t;
   }
 
-  /// The ray as it was traced, in the world.
-  static __device__ __forceinline__ Ray world_ray() {
-    Ray ray;
-    asm("call (%0), _optix_get_world_ray_origin_x, ();" : "=f"(ray.origin.x));
-    asm("call (%0), _optix_get_world_ray_origin_y, ();" : "=f"(ray.origin.y));
-    asm("call (%0), _optix_get_world_ray_origin_z, ();" : "=f"(ray.origin.z));
-    asm("call (%0), _optix_get_world_ray_direction_x, ();" : "=f"(ray.direction.x));
-    asm("call (%0), _optix_get_world_ray_direction_y, ();" : "=f"(ray.direction.y));
-    asm("call (%0), _optix_get_world_ray_direction_z, ();" : "=f"(ray.direction.z));
-    return ray;
-  }
-
   static __device__ __forceinline__ std::uint32_t payload_word(int i) {
     std::uint32_t word;
     asm volatile("call (%0), _optix_get_payload, (%1);" : "=r"(word) : "r"(i));
@@ -88,7 +76,7 @@ struct DeviceApi {
   static __device__ __forceinline__ void trace(TraversableHandle handle, const Ray& ray,
                                                float t_min, float t_max, unsigned flags,
                                                unsigned record, OptixPayload& payload) {
-    static_assert(optix_payload_words == 5);
+    static_assert(optix_payload_words == 11);
     std::uint32_t* p = payload.word;
     const std::uint32_t no = 0, all = 0xffu, words = optix_payload_words;
     [[maybe_unused]] std::uint32_t q[32];  // whose first ones are no operands
@@ -101,18 +89,18 @@ struct DeviceApi {
         "(%32,%33,%34,%35,%36,%37,%38,%39,%40,%41,%42,%43,%44,%45,%46,%47,%48,"
         "%49,%50,%51,%52,%53,%54,%55,%56,%57,%58,%59,%60,%61,%62,%63,%64,%65,%66,%67,%68,%69,%70,"
         "%71,%72,%73,%74,%75,%76,%77,%78,%79,%80);"
-        : "=r"(p[0]), "=r"(p[1]), "=r"(p[2]), "=r"(p[3]), "=r"(p[4]), "=r"(q[5]), "=r"(q[6]),
-          "=r"(q[7]), "=r"(q[8]), "=r"(q[9]), "=r"(q[10]), "=r"(q[11]), "=r"(q[12]), "=r"(q[13]),
+        : "=r"(p[0]), "=r"(p[1]), "=r"(p[2]), "=r"(p[3]), "=r"(p[4]), "=r"(p[5]), "=r"(p[6]),
+          "=r"(p[7]), "=r"(p[8]), "=r"(p[9]), "=r"(p[10]), "=r"(q[11]), "=r"(q[12]), "=r"(q[13]),
           "=r"(q[14]), "=r"(q[15]), "=r"(q[16]), "=r"(q[17]), "=r"(q[18]), "=r"(q[19]), "=r"(q[20]),
           "=r"(q[21]), "=r"(q[22]), "=r"(q[23]), "=r"(q[24]), "=r"(q[25]), "=r"(q[26]), "=r"(q[27]),
           "=r"(q[28]), "=r"(q[29]), "=r"(q[30]), "=r"(q[31])
         : "r"(no), "l"(handle), "f"(ray.origin.x), "f"(ray.origin.y), "f"(ray.origin.z),
           "f"(ray.direction.x), "f"(ray.direction.y), "f"(ray.direction.z), "f"(t_min), "f"(t_max),
           "f"(0.0f), "r"(all), "r"(flags), "r"(record), "r"(no), "r"(no), "r"(words), "r"(p[0]),
-          "r"(p[1]), "r"(p[2]), "r"(p[3]), "r"(p[4]), "r"(no), "r"(no), "r"(no), "r"(no), "r"(no),
+          "r"(p[1]), "r"(p[2]), "r"(p[3]), "r"(p[4]), "r"(p[5]), "r"(p[6]), "r"(p[7]), "r"(p[8]),
+          "r"(p[9]), "r"(p[10]), "r"(no), "r"(no), "r"(no), "r"(no), "r"(no), "r"(no), "r"(no),
           "r"(no), "r"(no), "r"(no), "r"(no), "r"(no), "r"(no), "r"(no), "r"(no), "r"(no), "r"(no),
-          "r"(no), "r"(no), "r"(no), "r"(no), "r"(no), "r"(no), "r"(no), "r"(no), "r"(no), "r"(no),
-          "r"(no), "r"(no));
+          "r"(no), "r"(no), "r"(no), "r"(no));
   }
 };
 

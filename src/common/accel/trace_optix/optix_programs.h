@@ -19,8 +19,15 @@ namespace pt::optix {
 template <class Api, class Query>
 PT_OPTIX_FUNCTION void load_query(Query& query) {
   OptixPayload payload;
-  for (int i = 0; i < optix_payload_words; ++i) payload.word[i] = Api::payload_word(i);
+  for (int i = 0; i < optix_query_words; ++i) payload.word[i] = Api::payload_word(i);
   from_payload(payload, query);
+}
+
+/// The ray as it was traced.
+template <class Api>
+PT_OPTIX_FUNCTION Ray load_ray() {
+  const auto number = [](int i) { return bits_to_float(Api::payload_word(optix_query_words + i)); };
+  return {{number(0), number(1), number(2)}, {number(3), number(4), number(5)}};
 }
 
 template <class Api, class Query>
@@ -37,7 +44,7 @@ PT_OPTIX_FUNCTION std::uint32_t named_instance(const TriangleTree& tree) {
 
 template <class Api, class Query>
 PT_OPTIX_FUNCTION bool offer_named(const TriangleTree& tree, Query& query) {
-  return offer_candidate(tree, Api::world_ray(), Api::primitive_index(), named_instance<Api>(tree),
+  return offer_candidate(tree, load_ray<Api>(), Api::primitive_index(), named_instance<Api>(tree),
                          query);
 }
 
@@ -51,7 +58,7 @@ PT_OPTIX_FUNCTION void intersect_closest_box(const OptixScene& scene) {
   offer_named<Api>(scene.tree, query);
   if (!(query.t_max() < before)) return store_query<Api>(query);
   store_query<Api>(query);
-  Api::report_intersection(optix_t_max(query.t_max(), optix_cull_margin(scene, Api::world_ray())));
+  Api::report_intersection(optix_t_max(query.t_max(), optix_cull_margin(scene, load_ray<Api>())));
 }
 
 /// With ray_terminate_on_first_hit.
@@ -133,7 +140,7 @@ PT_OPTIX_FUNCTION Hit trace_closest(const OptixScene& scene, const Ray& ray, Que
     return ours.is_miss() ? hit : ours;
   } else {
     if (begins_too_far(scene, ray)) return trace_far(scene.tree, ray, query).result();
-    OptixPayload payload = to_payload(query);
+    OptixPayload payload = to_payload(query, ray);
     Api::trace(scene.handle, ray, t_min, t_max,
                hits == OptixHits::custom ? ray_disable_anyhit | ray_disable_closesthit
                                          : ray_disable_closesthit,
@@ -162,7 +169,7 @@ PT_OPTIX_FUNCTION bool trace_any(const OptixScene& scene, const Ray& ray, Query 
     return !hit.is_miss();
   } else {
     if (begins_too_far(scene, ray)) return trace_far(scene.tree, ray, query).result();
-    OptixPayload payload = to_payload(query);
+    OptixPayload payload = to_payload(query, ray);
     Api::trace(scene.handle, ray, optix_t_min(query.t_min(), margin),
                optix_t_max(query.t_max(), margin),
                hits == OptixHits::custom

@@ -54,8 +54,9 @@ PT_HD bool offer_candidate(const TriangleTree& tree, const Ray& ray, std::uint32
                      record.first_slot + primitive, 1, visit, instance, query);
 }
 
-/// How many words a ray carries: a query of triangle_query.h, word by word.
-inline constexpr int optix_payload_words = 5;
+/// How many words a ray carries: a query of triangle_query.h and the ray as it was traced, word by
+/// word. OptiX's own world ray in an intersection program of an instance is not that one.
+inline constexpr int optix_query_words = 5, optix_payload_words = optix_query_words + 6;
 
 /// Records of the hit programs, counted from the first (OptixPipeline).
 enum OptixRecord : unsigned { optix_record_closest, optix_record_any, optix_record_ties };
@@ -65,10 +66,14 @@ struct OptixPayload {
 };
 
 template <class Query>
-PT_HD OptixPayload to_payload(const Query& query) {
-  static_assert(std::is_trivially_copyable_v<Query> && sizeof(Query) <= sizeof(OptixPayload));
+PT_HD OptixPayload to_payload(const Query& query, const Ray& ray = {}) {
+  static_assert(std::is_trivially_copyable_v<Query> && sizeof(Query) <= 4 * optix_query_words);
   OptixPayload payload{};
   memcpy(&payload, static_cast<const void*>(&query), sizeof query);
+  for (int i = 0; i < 3; ++i) {
+    payload.word[optix_query_words + i] = float_to_bits(ray.origin[i]);
+    payload.word[optix_query_words + 3 + i] = float_to_bits(ray.direction[i]);
+  }
   return payload;
 }
 
