@@ -43,7 +43,7 @@ what = "a thing"
 takes = "work"
 '''
 # Their rows are of an experiment that has them since, but were not measured yet.
-UNMEASURED = {"meister_2018_reinsertion"}
+UNMEASURED = set()  # names of claims whose tables lack rows yet
 DEVICES = sorted({path.parent for path in (ROOT / "results").glob("*/*.json")
                   if path.parent.name != "submissions"})
 
