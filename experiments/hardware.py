@@ -4,7 +4,7 @@
 The wavefront traces its queues by our persistent warps or by OptiX, all other stages being the same;
 the host launches the waves in all rows, and no path is finished outside of them. `mrays_*` is rays
 and shadow rays per second of the stages that trace (10^6/s), `ratio_*` our tracer's time of the whole
-render divided by the row's. Images of `custom` and `any-hit` are compared with ours first; those of
+render divided by the row's. Images of `custom` are compared with ours first; those of `any-hit` and
 `built-in` may differ in some pixels. A GPU without RT cores (an H100 or H200 has none) runs OptiX by
 software: then a row says nothing of hardware.
 """
@@ -50,7 +50,7 @@ def configurations(arguments, _device):
         f"--max-depth 8 --builder hploc {options}",
         {"panel": "", "series": variant, "x": name, "scene": name, "variant": variant,
          **{f"mrays_{part}": "" for part in PARTS}, **ratio_labels()},
-        same_image=name if variant != "built-in" else "")
+        same_image=name if variant in (BASE, "custom") else "")
         for name, scene in scenes_of(arguments).items() for variant, options in VARIANTS.items()]
 
 

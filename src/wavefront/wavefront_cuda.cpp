@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <numeric>
 
+#include "common/accel/trace_optix/optix_memory_cuda.h"
 #include "common/error/error.h"
+#include "wavefront/optix/optix_tracer.h"
 #include "wavefront/wavefront.h"
 
 namespace pt {
@@ -47,6 +49,14 @@ void WavefrontCuda::make_optix() {
   optix_memory_ = std::make_unique<CudaOptixMemory>(stream());
   optix_ = std::make_unique<OptixTracer>(*optix_memory_, scene_, has_masks_, plan_.optix_hits,
                                          optix_queue_code());
+}
+
+void WavefrontCuda::trace_by_optix(StageId stage, const StageQueues& queues,
+                                   const SampleBuffer& samples) {
+  const OptixQueue rays{queues.slots, queues.count};
+  if (stage == StageId::shadow)
+    return optix_->trace_shadow_queue(scene_, buffers_.pool, rays, samples);
+  optix_->trace_queue(scene_, buffers_.pool, rays, samples);
 }
 
 void WavefrontCuda::describe(RenderReport& report) const {

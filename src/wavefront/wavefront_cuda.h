@@ -1,15 +1,16 @@
 // The wavefront's renderer on CUDA: the pool, the two ways to run the loop of waves.
 #pragma once
 
-#include "common/accel/trace_optix/optix_memory_cuda.h"
 #include "common/block_wavefront/block_wavefront_cuda.h"
 #include "common/device/cuda/cuda_renderer.cuh"
 #include "wavefront/compaction/compaction_cuda.h"
 #include "wavefront/loop.h"
-#include "wavefront/optix/optix_tracer.h"
 #include "wavefront/pool/stage_bytes.h"
 
 namespace pt {
+
+class CudaOptixMemory;
+class OptixTracer;
 
 /// The scenes of a wavefront with this source of random numbers, as Traits; those with media apart,
 /// whose kernels compile beside the others.
@@ -80,6 +81,8 @@ class WavefrontCuda : public CudaRenderer {
   void enqueue_finish_of(const StageContext<Source>& context);
   /// Builds what OptiX needs, where it traces.
   void make_optix();
+  /// The rays of a queue; the stage says of which kind.
+  void trace_by_optix(StageId stage, const StageQueues& queues, const SampleBuffer& samples);
   void allocate_pool(const SceneData& scene);
   /// Whether blocks follow the whole batch from its first rays, as few paths as it has.
   bool has_few_paths(const SampleBuffer& batch) const;

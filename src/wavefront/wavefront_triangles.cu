@@ -32,7 +32,7 @@ __global__ void stamp_kernel(StageClock* clock, StageId stage) { stamp_first_thr
 void WavefrontCuda::trace_queue(const StageQueues& queues, const SampleBuffer& samples) {
   if (optix_ != nullptr) {
     launch("stamp", stamp_kernel, 1, 1, 0, clock(), StageId::intersect);
-    return optix_->trace_queue(scene_, buffers_.pool, {queues.slots, queues.count}, samples);
+    return trace_by_optix(StageId::intersect, queues, samples);
   }
   QueuedPaths paths{{buffers_.pool, queues, &buffers_.counters->traced}};
   set_lanes(paths.rays, lanes_of(scene_));
@@ -42,7 +42,7 @@ void WavefrontCuda::trace_queue(const StageQueues& queues, const SampleBuffer& s
 void WavefrontCuda::trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples) {
   if (optix_ != nullptr) {
     launch("stamp", stamp_kernel, 1, 1, 0, clock(), StageId::shadow);
-    return optix_->trace_shadow_queue(scene_, buffers_.pool, {queues.slots, queues.count}, samples);
+    return trace_by_optix(StageId::shadow, queues, samples);
   }
   QueuedShadowRays shadows{{buffers_.pool, queues, &buffers_.counters->shadow_traced}, samples};
   set_lanes(shadows.rays, lanes_of(scene_));

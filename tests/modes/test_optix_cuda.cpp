@@ -47,11 +47,9 @@ void expect_images(const std::string& name, const std::string& hits, const Rende
   const std::size_t pixels = differing_pixels(found.image, expected.image);
   std::cout << "[ count    ] " << name << " " << hits << ": " << pixels << " of "
             << expected.image.width * expected.image.height << " pixels differ\n";
-  if (hits == "built-in") {
-    EXPECT_LE(pixels, expected.image.rgb.size() / 3 / 20);
-  } else {
-    expect_same(found, expected);
-  }
+  if (hits == "custom") return expect_same(found, expected);
+  // OptiX may leave out triangles that our test meets: edges, and those without area.
+  EXPECT_LE(pixels, expected.image.rgb.size() / 3 / 20);
 }
 
 class CudaOptixModes : public CudaOptix, public testing::WithParamInterface<const char*> {};

@@ -50,12 +50,22 @@ PT_HD bool offer_candidate(const TriangleTree& tree, const Ray& ray, std::uint32
   const InstanceVisit visit =
       visit_instance(record, ray, make_slab_test_ray(ray), query.t_min(), query.t_max());
   if (visit.is_empty) return false;
-  return offer_slots(tree, make_triangle_ray(visit.ray.origin, visit.ray.direction),
-                     record.first_slot + primitive, 1, visit, instance, query);
+  const std::uint32_t slot = record.first_slot + primitive;
+  const Triangle triangle = load_wide(&tree.triangles[slot]);
+  const TriangleHit hit =
+      intersect_triangle(make_triangle_ray(visit.ray.origin, visit.ray.direction), triangle.v0,
+                         triangle.v1, triangle.v2);
+  // By its bits: OptiX's compiler makes minima and maxima of moved(), which take NaN for a number.
+  if ((float_to_bits(hit.t) & 0x7fffffffu) > 0x7f800000u) return false;
+  const float t = visit.moved(hit.t);
+  if constexpr (Query::has_masks) {
+    if (query.hides(triangle, hit, t, instance)) return false;
+  }
+  return query.offer(tree, t, slot, instance);
 }
 
 /// How many words a ray carries: a query of triangle_query.h and the ray as it was traced, word by
-/// word. OptiX's own world ray in an intersection program of an instance is not that one.
+/// word: OptiX need not give back the same bits.
 inline constexpr int optix_query_words = 5, optix_payload_words = optix_query_words + 6;
 
 /// Records of the hit programs, counted from the first (OptixPipeline).
