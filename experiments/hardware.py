@@ -48,14 +48,14 @@ def configurations(arguments, _device):
         f"{name}: {variant}",
         f"--mode wavefront --scene {scene} --width {size} --height {size} --spp {spp} "
         f"--max-depth 8 --builder hploc {options}",
-        {"panel": "", "series": variant, "x": name, "scene": name, "variant": variant,
+        {"panel": "", "series": variant, "x": name, "variant": variant,
          **{f"mrays_{part}": "" for part in PARTS}, **ratio_labels()},
         same_image=name if variant in (BASE, "custom") else "")
         for name, scene in scenes_of(arguments).items() for variant, options in VARIANTS.items()]
 
 
 def scene_of(row):
-    return row["scene"]
+    return row["x"]
 
 
 def traced_ms(row, part):

@@ -16,6 +16,8 @@
 
 namespace pt {
 
+class Ranks;
+
 /// What a calibration belongs to.
 struct CalibrationKey {
   std::string device;       ///< "NVIDIA H200"; of a CPU its model
