@@ -12,7 +12,7 @@ namespace pt {
 /// A sky of ones.
 inline const std::string lit = "LightSource \"infinite\"\n";
 /// A wall that fills pbrt_world's image, at a distance of 1, facing the camera at the origin.
-inline const std::string wall =
+inline const std::string facing_wall =
     "Shape \"bilinearmesh\" \"point3 P\" [ -3 -3 1  -3 3 1  3 -3 1  3 3 1 ]\n";
 
 inline LoadedScene load_pbrt_file(const std::string& path, LoadOptions options = {}) {

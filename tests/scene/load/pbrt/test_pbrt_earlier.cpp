@@ -24,7 +24,7 @@ Color earlier_furnace(const std::string& material, const std::string& before = {
   SceneData scene = load_pbrt_text(
                         "Film \"image\" \"integer xresolution\" 16 \"integer yresolution\" 16 "
                         "PixelFilter \"box\" Camera \"perspective\" \"float fov\" 1 WorldBegin\n" +
-                        lit + before + "Material " + material + "\n" + wall + "WorldEnd")
+                        lit + before + "Material " + material + "\n" + facing_wall + "WorldEnd")
                         .scene;
   Options options = image_options(16, 16, 256, 20);
   options.filter = FilterChoice();

@@ -38,9 +38,10 @@ TEST(PbrtLights, AnRgbOfOneIsARadianceOfOne) {
   expect_near(mean_color(load_pbrt_silently(pbrt_world(
                   "LightSource \"infinite\" \"rgb L\" [.1 .2 .3] \"float scale\" 2" + dot_behind))),
               {0.2f, 0.4f, 0.6f});
-  expect_near(mean_color(load_pbrt_silently(pbrt_world(
-                  "AreaLightSource \"diffuse\" \"rgb L\" [.1 .2 .3] \"float scale\" 2\n" + wall))),
-              {0.2f, 0.4f, 0.6f});
+  expect_near(
+      mean_color(load_pbrt_silently(pbrt_world(
+          "AreaLightSource \"diffuse\" \"rgb L\" [.1 .2 .3] \"float scale\" 2\n" + facing_wall))),
+      {0.2f, 0.4f, 0.6f});
 }
 
 TEST(PbrtLights, TheFilmsExposureMultipliesAll) {
@@ -136,7 +137,7 @@ TEST(PbrtLights, DistantLightFallsFromFromToTo) {
   expect_near(light.intensity, Color(10.0f));
   // On a white wall: irradiance 2 across it, radiance 2 / pi.
   expect_near(mean_color(load_pbrt_silently(
-                  pbrt_world(white + wall + "LightSource \"distant\" \"rgb L\" [2 2 2]"))),
+                  pbrt_world(white + facing_wall + "LightSource \"distant\" \"rgb L\" [2 2 2]"))),
               Color(2.0f * inverse_pi), 1e-4f);
 }
 

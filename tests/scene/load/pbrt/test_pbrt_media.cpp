@@ -140,9 +140,9 @@ TEST(PbrtMedia, MayHaveAPriority) {
 }
 
 TEST(PbrtMedia, TheBackOfALampHasItsSidesSwapped) {
-  const SceneData scene =
-      load_pbrt_silently(pbrt_world(named_medium("") + fog_inside +
-                                    "AreaLightSource \"diffuse\" \"bool twosided\" true\n" + wall));
+  const SceneData scene = load_pbrt_silently(
+      pbrt_world(named_medium("") + fog_inside +
+                 "AreaLightSource \"diffuse\" \"bool twosided\" true\n" + facing_wall));
   ASSERT_EQ(scene.meshes.size(), 2u);
   EXPECT_EQ(scene.materials[scene.meshes[0].material].media, (MediumBoundary{no_medium, 0}));
   EXPECT_EQ(scene.materials[scene.meshes[1].material].media, (MediumBoundary{0, no_medium}));

@@ -109,17 +109,18 @@ TEST(PbrtSurfaces, DiffuseTransmissionSharesTheLight) {
       "Material \"diffusetransmission\" \"rgb reflectance\" [.1 .4 0] \"rgb transmittance\" "
       "[.5 .2 .3] \"float scale\" 1.25";
   // In the same light from both sides.
-  expect_near(furnace(material, wall), {0.75f, 0.75f, 0.375f}, 0.02f);
+  expect_near(furnace(material, facing_wall), {0.75f, 0.75f, 0.375f}, 0.02f);
   // What reflects only: a black world behind it makes no difference.
-  expect_near(furnace("Material \"diffusetransmission\" \"rgb transmittance\" [0 0 0]", wall),
-              Color(0.25f), 1e-3f);
+  expect_near(
+      furnace("Material \"diffusetransmission\" \"rgb transmittance\" [0 0 0]", facing_wall),
+      Color(0.25f), 1e-3f);
 }
 
 TEST(PbrtSurfaces, ACoatedMirrorKeepsItsEnergy) {
   // A perfect metal below a clear coat reflects everything.
   const std::string metal =
       "Material \"coatedconductor\" \"rgb reflectance\" [1 1 1] \"float thickness\" 0";
-  expect_near(furnace(metal, wall), Color(1.0f), 0.01f);
+  expect_near(furnace(metal, facing_wall), Color(1.0f), 0.01f);
 }
 
 TEST(PbrtSurfaces, MixTakesTheSecondByItsAmount) {
@@ -128,7 +129,7 @@ TEST(PbrtSurfaces, MixTakesTheSecondByItsAmount) {
       "MakeNamedMaterial \"b\" \"string type\" \"diffuse\" \"rgb reflectance\" [0 0 1]\n";
   expect_near(
       furnace(named + "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" .25",
-              wall),
+              facing_wall),
       {0.75f, 0, 0.25f}, 0.01f);
 }
 
