@@ -120,6 +120,7 @@ std::vector<std::string> arguments_for(const OptionEntry& entry, const std::stri
     arguments.insert(arguments.end(), {"--integrator", "mlt"});
   }
   if (entry.name == "animation") arguments.insert(arguments.end(), {"--time", "1"});
+  if (entry.name == "optix-hits") arguments.insert(arguments.end(), {"--accel", "optix"});
   if (entry.name == "part") arguments.insert(arguments.end(), {"--checkpoint", "c.exr"});
   if (entry.name == "wave-rays") arguments.insert(arguments.end(), {"--stages", "fused"});
   if (entry.name == "work" || entry.name == "block" || entry.name == "kernel")
