@@ -9,7 +9,7 @@ debian_release=$(. /etc/os-release && printf '%s' "${VERSION_CODENAME:-}")
 # make_bare_debian RELEASE FOLDER: anew, from this machine's mirror. The tree as debootstrap made it
 # and the packages that are installed into it later stay in build/bare_debian, for the next one.
 make_bare_debian() {
-  local release=$1 tree=$2 kept=$root/build/bare_debian/$1 mirror file options=() script=()
+  local release=$1 tree=$2 kept=${root:?}/build/bare_debian/$1 mirror file options=() script=()
   ((EUID == 0)) || die "root is needed: debootstrap and chroot"
   install_missing debootstrap
   # shellcheck disable=SC2016 # apt-get's own variables

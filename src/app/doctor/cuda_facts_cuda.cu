@@ -2,8 +2,8 @@
 #include <dlfcn.h>
 
 #include "app/doctor/doctor.h"
-#include "common/accel/trace_optix/optix_rays.h"
 #include "common/accel/trace_optix/optix_library.h"
+#include "common/accel/trace_optix/optix_rays.h"
 #include "common/device/cuda/counter_session_cuda.h"
 
 namespace pt {
