@@ -21,9 +21,8 @@ VARIANTS = {BASE: "--accel cwbvh --schedule host --finish-paths 0",
             "custom": "--accel optix --optix-hits custom",
             "any-hit": "--accel optix --optix-hits any-hit",
             "built-in": "--accel optix --optix-hits built-in"}
-SCENES = {"statue:1M": "statue:1M", "terrain:1M": "terrain:1M", "boxes": "boxes",
-          "instances:100K": "instances:100K", "dial:16:0.5:closed": "dial:16:0.5:closed"}
-QUICK = {"statue:3K": "statue:3K", "instances:20": "instances:20"}
+SCENES = ["statue:1M", "terrain:1M", "boxes", "instances:100K", "dial:16:0.5:closed"]
+QUICK = ["statue:3K", "instances:20"]
 PARTS = {"median": "median", "min": "max", "max": "min"}
 
 
@@ -37,9 +36,9 @@ def add_arguments(parser):
 
 
 def scenes_of(arguments):
-    if arguments.quick:
-        return QUICK
-    return {**SCENES, **{short_name(path): shlex.quote(path) for path in scene_files(arguments)}}
+    """{name: as --scene takes it}"""
+    scenes = QUICK if arguments.quick else [*SCENES, *scene_files(arguments)]
+    return {short_name(scene): shlex.quote(scene) for scene in scenes}
 
 
 def configurations(arguments, _device):
