@@ -4,7 +4,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -122,12 +121,11 @@ std::uint32_t add_grid(SceneData& scene, VolumeData volume) {
 
 float largest_value(const VolumeData& volume) {
   if (!volume.is_sparse()) return *std::max_element(volume.values.begin(), volume.values.end());
-  std::atomic<float> largest = 0.0f;
+  float largest = 0.0f;
   for_each_brick(&volume.nodes[volume.root], [&](const SparseBrick& brick) {
     const float value =
         brick.values ? *std::max_element(brick.values, brick.values + 512) : brick.value;
-    for (float known = largest; known < value && !largest.compare_exchange_weak(known, value);) {
-    }
+    raise_to(std::atomic_ref(largest), value);
   });
   return largest;
 }

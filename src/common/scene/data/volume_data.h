@@ -1,6 +1,7 @@
 // Grids as loaders and built-in scenes describe them: arrays of voxels, or trees of NanoVDB.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <span>
 
@@ -56,6 +57,13 @@ struct SparseBrick {
 /// Calls function(brick) for all bricks that are not 0, which may be at the same time.
 void for_each_brick(const SparseBlock* root,
                     const std::function<void(const SparseBrick&)>& function);
+
+/// The larger of both, where other threads may raise the number as well.
+inline void raise_to(std::atomic_ref<float> number, float value) {
+  float known = number;
+  while (known < value && !number.compare_exchange_weak(known, value)) {
+  }
+}
 
 /// A sparse grid as an array of voxels. Throws Error where that is too large.
 VolumeData dense_copy(const VolumeData& volume);

@@ -91,11 +91,8 @@ class SparseMajorants {
     for (std::uint32_t k = z.first; k <= z.last; ++k) {
       for (std::uint32_t j = y.first; j <= y.last; ++j) {
         for (std::uint32_t i = x.first; i <= x.last; ++i) {
-          const std::atomic_ref<float> majorant(
-              majorants_[i + grid_.cells[0] * (j + std::size_t{grid_.cells[1]} * k)]);
-          float known = majorant;
-          while (known < value && !majorant.compare_exchange_weak(known, value)) {
-          }
+          float& majorant = majorants_[i + grid_.cells[0] * (j + std::size_t{grid_.cells[1]} * k)];
+          raise_to(std::atomic_ref(majorant), value);
         }
       }
     }
