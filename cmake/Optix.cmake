@@ -6,15 +6,21 @@ elseif(PTEXP_OPTIX STREQUAL "ON" AND NOT PTEXP_CUDA_FOUND)
   message(FATAL_ERROR "PTEXP_OPTIX=ON needs the CUDA device (PTEXP_CUDA)")
 endif()
 
-# ptexp_optix_module(TARGET SOURCE): TARGET may include <optix/NAME.inc>, the PTX of SOURCE as a string.
-# Every OptiX that ptexp knows takes code for compute capability 7.5.
+# ptexp_optix_module(TARGET SOURCE): TARGET may include <optix/NAME.inc>, the PTX of SOURCE as a string,
+# which is empty where no modules are built. Every OptiX that ptexp knows takes code for compute
+# capability 7.5.
 function(ptexp_optix_module target source)
   cmake_path(GET source STEM name)
+  set(output ${CMAKE_CURRENT_BINARY_DIR}/optix/${name}.inc)
+  target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
+  if(NOT PTEXP_OPTIX_FOUND)
+    file(CONFIGURE OUTPUT ${output} CONTENT "\"\"\n")
+    return()
+  endif()
   add_library(ptexp_${name} OBJECT ${source})
   set_target_properties(ptexp_${name} PROPERTIES CUDA_PTX_COMPILATION ON
                         CUDA_ARCHITECTURES 75-virtual)
   target_link_libraries(ptexp_${name} PRIVATE ptexp_flags)
-  set(output ${CMAKE_CURRENT_BINARY_DIR}/optix/${name}.inc)
   add_custom_command(OUTPUT ${output}
     COMMAND ${CMAKE_COMMAND} -DINPUT=$<TARGET_OBJECTS:ptexp_${name}> -DOUTPUT=${output}
             -P ${PROJECT_SOURCE_DIR}/cmake/optix_code.cmake
@@ -22,5 +28,4 @@ function(ptexp_optix_module target source)
     VERBATIM)
   add_custom_target(ptexp_${name}_code DEPENDS ${output})
   add_dependencies(${target} ptexp_${name}_code)
-  target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
 endfunction()

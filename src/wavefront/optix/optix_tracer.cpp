@@ -2,9 +2,19 @@
 
 #include <algorithm>
 
-#include "common/accel/trace_optix/optix_rays.h"
-
 namespace pt {
+namespace {
+
+constexpr char queue_code[] =
+#include <optix/optix_queue_programs.inc>
+    ;
+
+}  // namespace
+
+const std::string& optix_queue_code() {
+  static const std::string code = queue_code;
+  return code;
+}
 
 OptixTracer::OptixTracer(OptixMemory& memory, const Scene& scene, bool has_masks, OptixHits hits,
                          const std::string& code)

@@ -37,8 +37,7 @@ inline constexpr int property_max_primitives = 0x2003, property_max_instances = 
                      property_rtcore_version = 0x2005;
 
 // Enumerators of one use each [D] [M] [L].
-inline constexpr int optimization_level_default = 0, debug_level_none = 0x2350,
-                     debug_level_minimal = 0x2351;
+inline constexpr int optimization_level_default = 0, debug_level_none = 0x2350;
 inline constexpr int group_kind_raygen = 0x2421, group_kind_miss = 0x2422,
                      group_kind_hitgroup = 0x2424;
 inline constexpr int build_operation_build = 0x2161;
@@ -48,16 +47,14 @@ inline constexpr int emit_compacted_size = 0x2181;
 inline constexpr unsigned build_allow_compaction = 1u << 1, build_prefer_fast_trace = 1u << 2;
 inline constexpr unsigned graph_single_gas = 1u << 0, graph_single_level_instancing = 1u << 1;
 inline constexpr unsigned primitives_custom = 1u << 0, primitives_triangle = 1u << 31;
-inline constexpr unsigned geometry_none = 0, geometry_disable_anyhit = 1u << 0;
+inline constexpr unsigned geometry_none = 0;
 inline constexpr unsigned exception_none = 0;
 
 // Flags of a ray [L].
-inline constexpr unsigned ray_none = 0, ray_disable_anyhit = 1u << 0, ray_enforce_anyhit = 1u << 1,
-                          ray_terminate_on_first_hit = 1u << 2, ray_disable_closesthit = 1u << 3;
+inline constexpr unsigned ray_disable_anyhit = 1u << 0, ray_terminate_on_first_hit = 1u << 2,
+                          ray_disable_closesthit = 1u << 3;
 
-inline constexpr std::size_t record_header_bytes = 32, record_alignment = 16;  // [D] [L]
-inline constexpr std::size_t structure_alignment = 128, box_alignment = 8,
-                             instance_alignment = 16;  // [L]
+inline constexpr std::size_t record_header_bytes = 32;  // [D] [L]
 
 using LogCallback = void (*)(unsigned level, const char* tag, const char* message, void* data);
 

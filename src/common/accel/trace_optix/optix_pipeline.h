@@ -10,7 +10,10 @@
 
 namespace pt {
 
-/// Two launches, for each kind of rays, over the programs of optix_programs.cuh.
+/// Threads of a launch, at most; each takes every so many rays.
+inline constexpr std::uint32_t optix_width_max = 1u << 20;
+
+/// Two launches, for each kind of rays, over the programs of optix_programs.h.
 class OptixPipeline {
  public:
   /// `code`: a module in PTX; its launch parameters are the variable `params`, of `params_bytes`.

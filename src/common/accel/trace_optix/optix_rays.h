@@ -17,9 +17,6 @@ struct OptixRayParams {
   RayArrays rays;
 };
 
-/// Threads of a launch, at most; each takes every so many rays.
-inline constexpr std::uint32_t optix_width_max = 1u << 20;
-
 /// Ray generation.
 template <class Api, OptixHits hits>
 PT_OPTIX_FUNCTION void trace_closest_rays(const OptixRayParams& p) {

@@ -1,4 +1,4 @@
-// The modules for OptiX, compiled to PTX by CMakeLists.txt.
+// The module for OptiX that traces arrays of rays, compiled to PTX by CMake (cmake/Optix.cmake).
 #include "common/accel/trace_optix/optix_rays.h"
 
 namespace pt {
