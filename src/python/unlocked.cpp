@@ -22,8 +22,11 @@ struct Away {
   std::condition_variable changed;
   int threads = 0;
   std::set<WorkState*> works;
-  bool is_ending = false, has_ended = false;
+  bool is_ending = false;
   std::thread::id ender;
+
+  /// Whether the calling thread must not have the interpreter's lock again. Needs `mutex`.
+  bool is_over() const { return is_ending && ender != std::this_thread::get_id(); }
 };
 
 /// Never destroyed: threads may outlive static objects.
@@ -47,9 +50,20 @@ void end_all() {
   {
     std::unique_lock lock(a.mutex);
     a.changed.wait_for(lock, patience, [&] { return a.threads == 0; });
-    a.has_ended = true;
   }
   PyEval_RestoreThread(state);
+}
+
+bool is_over() {
+  Away& a = away();
+  const std::lock_guard lock(a.mutex);
+  return a.is_over();
+}
+
+/// The calling thread, which has the interpreter's lock, gives it away and never goes on.
+[[noreturn]] void unlock_forever() {
+  PyEval_SaveThread();
+  wait_forever();
 }
 
 constexpr std::chrono::milliseconds interval(50);
@@ -100,10 +114,10 @@ struct Joined {
 }  // namespace
 
 WorkState::WorkState() {
+  if (is_over()) unlock_forever();
   Away& a = away();
   const std::lock_guard lock(a.mutex);
   a.works.insert(this);
-  stop = a.is_ending;
 }
 
 WorkState::~WorkState() {
@@ -113,6 +127,7 @@ WorkState::~WorkState() {
 }
 
 Unlocked::Unlocked() {
+  if (is_over()) unlock_forever();
   {
     Away& a = away();
     const std::lock_guard lock(a.mutex);
@@ -123,16 +138,21 @@ Unlocked::Unlocked() {
 
 Unlocked::~Unlocked() {
   Away& a = away();
+  const auto leave = [&a] {
+    --a.threads;
+    a.changed.notify_all();
+  };
   {
     std::unique_lock lock(a.mutex);
-    const bool stays_away = a.has_ended && a.ender != std::this_thread::get_id();
-    lock.unlock();
-    if (stays_away) wait_forever();
+    if (a.is_over()) {
+      leave();
+      lock.unlock();
+      wait_forever();
+    }
   }
   PyEval_RestoreThread(state_);
   const std::lock_guard lock(a.mutex);
-  --a.threads;
-  a.changed.notify_all();
+  leave();
 }
 
 void wait_forever() {
@@ -165,7 +185,10 @@ nb::object run_interruptible(const std::function<void(WorkState&)>& work, nb::ob
   const auto wait = [&] {
     const Unlocked unlocked;
     std::unique_lock lock(mutex);
-    return ended.wait_for(lock, interval, [&] { return has_ended; });
+    const auto is_done = [&] { return has_ended; };
+    // The process does not end in the midst of work: this thread stays until it is done.
+    if (!ended.wait_for(lock, interval, is_done) && is_over()) ended.wait(lock, is_done);
+    return has_ended;
   };
   while (!wait()) watcher.look();
   {
