@@ -14,31 +14,20 @@ void run_blocks_cpu(const PathRays& stage, const BlockTraits& traits, const Samp
 void run_blocks_cpu(const ShadowRays& stage, const BlockTraits& traits, const SampleBuffer& samples,
                     const Scene& scene, const StageQueues& queues);
 
-/// The traits of a stage's rays; only of stages that trace.
-template <class Traits>
-constexpr BlockTraits block_traits(const IntersectRays<Traits>&) {
-  return {Traits::accel, Traits::geometry, Traits::has_masks, Traits::has_media};
-}
-template <class Traits>
-constexpr BlockTraits block_traits(const TraceShadowRays<Traits>&) {
-  return {Traits::accel, Traits::geometry, Traits::has_masks, Traits::has_media};
-}
-
-/// Whether it is a stage that traces in scenes with media.
+/// Whether the stage traces rays.
 template <class Stage>
-inline constexpr bool traces_media = false;
+inline constexpr bool traces_rays_of = false;
 template <class Traits>
-inline constexpr bool traces_media<IntersectRays<Traits>> = Traits::has_media;
+inline constexpr bool traces_rays_of<IntersectRays<Traits>> = true;
 template <class Traits>
-inline constexpr bool traces_media<TraceShadowRays<Traits>> = Traits::has_media;
+inline constexpr bool traces_rays_of<TraceShadowRays<Traits>> = true;
 
-/// Whether the stage runs so; with media where each boundary has a BSDF, so that a shadow ray ends
-/// at the first surface.
-template <class Stage>
-inline constexpr bool runs_in_blocks = false;
-template <class Traits>
-inline constexpr bool runs_in_blocks<IntersectRays<Traits>> = traces_blocks<Traits>;
-template <class Traits>
-inline constexpr bool runs_in_blocks<TraceShadowRays<Traits>> = traces_blocks<Traits>;
+/// The traits of its rays.
+template <template <class> class Stage, class Traits>
+BlockTraits block_traits(const Stage<Traits>&, const Scene& scene) {
+  const bool is_any = Traits::accel == Accel::any;
+  return {is_any ? scene.triangles.accel : Traits::accel, Traits::geometry, Traits::has_masks,
+          Traits::has_media};
+}
 
 }  // namespace pt

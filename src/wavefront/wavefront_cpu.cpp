@@ -138,16 +138,14 @@ class CpuExecutor {
   void run(const Stage& stage, const StageQueues& queues) {
     if (*queues.count == 0) return;
     part_.timer.time(to_string(id_of(stage)), [&] {
-      if constexpr (runs_in_blocks<Stage>) {
-        if constexpr (traces_media<Stage>) {
-          if (has_open_boundaries_) return run_stage_cpu(stage, scene_, queues);
-        }
-        run_blocks_cpu(stage, block_traits(stage), stage.samples, scene_, queues);
-      } else if constexpr (shades_in_blocks<Stage>) {
-        shade_blocks_cpu(stage, scene_, queues);
-      } else {
-        run_stage_cpu(stage, scene_, queues);
+      if constexpr (shades_in_blocks<Stage>) return shade_blocks_cpu(stage, scene_, queues);
+      if constexpr (traces_rays_of<Stage>) {
+        const BlockTraits traits = block_traits(stage, scene_);
+        // With media a block's shadow rays end at the first surface.
+        if (traces_blocks(traits) && !(traits.has_media && has_open_boundaries_))
+          return run_blocks_cpu(stage, traits, stage.samples, scene_, queues);
       }
+      run_stage_cpu(stage, scene_, queues);
     });
   }
 

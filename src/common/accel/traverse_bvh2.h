@@ -118,7 +118,8 @@ struct Bvh2Step {
   std::uint32_t first, second;
 };
 
-PT_HD Bvh2Step step_bvh2(const Bvh2Node& node, const SlabTestRay& ray, float t_min, float t_max) {
+PT_HD_IN_LOOP Bvh2Step step_bvh2(const Bvh2Node& node, const SlabTestRay& ray, float t_min,
+                                 float t_max) {
   const SlabInterval a = intersect_box(ray, {node.xy[0].x, node.xy[0].z, node.z.x},
                                        {node.xy[0].y, node.xy[0].w, node.z.y}, t_min, t_max);
   const SlabInterval b = intersect_box(ray, {node.xy[1].x, node.xy[1].z, node.z.z},

@@ -18,9 +18,11 @@ namespace pt {
 enum class AccelKind { automatic, PT_ACCELS(PT_ACCEL_ENUMERATOR) optix };
 
 /// The acceleration structure that is traversed. Embree's is for the CPU; cwbvh_avx2 is the wide
-/// tree for processors with AVX2.
-enum class Accel { PT_ACCELS(PT_ACCEL_ENUMERATOR) cwbvh_avx2 };
+/// tree for processors with AVX2. A CPU's kernels may be compiled for `any`: the one that
+/// TriangleTree::accel names.
+enum class Accel { PT_ACCELS(PT_ACCEL_ENUMERATOR) cwbvh_avx2, any };
 #undef PT_ACCEL_ENUMERATOR
+inline constexpr int accel_count = static_cast<int>(Accel::any) + 1;
 
 /// The trees over triangles for which all devices have kernels.
 inline constexpr std::initializer_list<Accel> tree_accels = {Accel::bvh2, Accel::cwbvh};
@@ -39,7 +41,7 @@ static_assert(accel_of(AccelKind::embree) == Accel::embree);
 #define PT_ACCEL_NAME(name) #name,
 /// As on the command line.
 inline const char* accel_name(Accel accel) {
-  constexpr const char* names[] = {PT_ACCELS(PT_ACCEL_NAME) "cwbvh"};
+  constexpr const char* names[] = {PT_ACCELS(PT_ACCEL_NAME) "cwbvh", "any"};
   return names[static_cast<int>(accel)];
 }
 #undef PT_ACCEL_NAME

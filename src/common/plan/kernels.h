@@ -68,8 +68,6 @@ constexpr EnumSet<ExtraRecords> if_built(EnumSet<ExtraRecords> records) {
   return has_carrying_kernels ? records : EnumSet<ExtraRecords>();
 }
 
-inline constexpr int accel_count = static_cast<int>(Accel::cwbvh_avx2) + 1;
-
 /// What a kernel knows of a scene besides its geometry; each has all of those before. A CPU's
 /// kernels with media know sparse grids, too.
 enum class Extras { plain, with_masks, with_media, with_sparse };

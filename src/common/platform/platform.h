@@ -18,12 +18,15 @@
 // Code that a compiler would call if it were left to it: then a kernel would hand it the scene
 // through local memory, which has cost up to 1.8 times the whole kernel.
 #define PT_HD_IN_KERNEL __host__ __device__ __forceinline__
+#define PT_HD_IN_LOOP PT_HD
 #define PT_UNROLL(n) PT_PRAGMA(unroll n)
 #else
 #include "common/platform/platform_cpu.h"
 #define PT_HD inline
 #define PT_NOINLINE __attribute__((noinline))
 #define PT_HD_IN_KERNEL inline
+// Of a loop that is short: GCC calls it where a file has much code, and rays take a quarter longer.
+#define PT_HD_IN_LOOP inline __attribute__((always_inline))
 #define PT_UNROLL(n) PT_PRAGMA(GCC unroll n)
 #endif
 

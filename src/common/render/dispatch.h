@@ -23,25 +23,52 @@ inline constexpr NumberSource number_source<SamplerSource> = NumberSource::sampl
 template <int records>
 inline constexpr NumberSource number_source<CarryingSource<records>> = NumberSource::sampler;
 
+/// The traits of the kernel for such scenes: on a CPU one kernel for all structures renders what is
+/// not the paper's.
+constexpr SceneTraits kernel_traits(bool on_cuda, SceneTraits scene) {
+  if (!on_cuda && scene.lighting == Lighting::full) scene.accel = Accel::any;
+  return scene;
+}
+
+/// Whether a kernel of these traits renders one of the scenes for which `has` says so.
+template <class Has>
+constexpr bool renders_some(bool on_cuda, const SceneTraits& kernel, Has&& has) {
+  if (kernel_traits(on_cuda, kernel) != kernel) return false;
+  if (kernel.accel != Accel::any) return has(kernel);
+  SceneTraits scene = kernel;
+  for (int i = 0; i < static_cast<int>(Accel::any); ++i) {
+    scene.accel = Accel{i};
+    if (has(scene)) return true;
+  }
+  return false;
+}
+
 /// Kernels with one of these bodies, this source of random numbers and one scene memory.
 template <bool on_cuda, class Source, SceneMemory memory, KernelBody... bodies>
 struct KernelSelection {
-  static constexpr bool has(const SceneTraits& scene) {
-    KernelNeed need{on_cuda, {bodies...}, scene, number_source<Source>, memory};
-    if constexpr (requires { Source::extra_records; })
-      need.extra =
-          Source::extra_records == any_extra ? some_records : ExtraRecords{Source::extra_records};
-    if (has_kernel(need)) return true;
-    need.branching = Branching::reduced;
-    return has_kernel(need);
+  static constexpr bool has(const SceneTraits& kernel) {
+    return renders_some(on_cuda, kernel, [](const SceneTraits& scene) {
+      KernelNeed need{on_cuda, {bodies...}, scene, number_source<Source>, memory};
+      if constexpr (requires { Source::extra_records; })
+        need.extra =
+            Source::extra_records == any_extra ? some_records : ExtraRecords{Source::extra_records};
+      if (has_kernel(need)) return true;
+      need.branching = Branching::reduced;
+      return has_kernel(need);
+    });
   }
 };
 
-/// Kernels of a CPU's scenes, with any source of random numbers.
+/// Whether a CPU has a kernel for such scenes, with any source of random numbers.
+constexpr bool has_cpu_kernel(const SceneTraits& scene) {
+  using enum NumberSource;
+  return has_kernel({false, KernelBody::serial, scene, {philox, xorwow, sampler}});
+}
+
+/// Kernels of a CPU's scenes.
 struct CpuKernels {
-  static constexpr bool has(const SceneTraits& scene) {
-    using enum NumberSource;
-    return has_kernel({false, KernelBody::serial, scene, {philox, xorwow, sampler}});
+  static constexpr bool has(const SceneTraits& kernel) {
+    return renders_some(false, kernel, has_cpu_kernel);
   }
 };
 
@@ -98,12 +125,14 @@ using CpuKindsWith =
 /// Throws Error, which names them.
 [[noreturn]] void throw_no_kernel(const SceneTraits& traits);
 
-/// function(Traits<...>{}) for the member of the list that has these traits. Throws Error when none
-/// has: the plan was not checked against the table.
+/// function(Traits<...>{}) for the member of the list that renders scenes of these traits. Throws
+/// Error when none does: the plan was not checked against the table.
 template <class Function, class... T>
 void dispatch_traits(TypeList<T...>, SceneTraits traits, Function&& function) {
   [[maybe_unused]] const auto called = [&](auto kind) {
-    const bool is_it = decltype(kind)::value() == traits;
+    constexpr SceneTraits kernel = decltype(kind)::value();
+    const bool is_it = kernel == traits || (kernel.accel == Accel::any && has_cpu_kernel(traits) &&
+                                            kernel_traits(false, traits) == kernel);
     if (is_it) function(kind);
     return is_it;
   };

@@ -53,10 +53,19 @@ PT_HD Hit closest_primitive_in_view(const Scene& scene, const Ray& ray, std::uin
   return hit.is_miss() ? Hit() : hit;
 }
 
+// In the structure that the scene names, on the CPU alone: compiled once, for kernels of any
+// structure (intersect_any.cpp).
+template <bool has_masks>
+Hit closest_triangle_any(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key);
+template <bool has_masks>
+bool any_triangle_any(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key);
+
 /// Both among the triangles; `ray_key` is for masks.
 template <class Traits>
 PT_HD Hit closest_triangle(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key) {
-  if constexpr (Traits::has_masks) {
+  if constexpr (Traits::accel == Accel::any) {
+    return closest_triangle_any<Traits::has_masks>(scene, ray, t_max, ray_key);
+  } else if constexpr (Traits::has_masks) {
     MaskedQuery<ClosestTriangle, MaskTest> query(0.0f, t_max, {scene, ray_key});
     traverse_triangles<Traits::accel, Traits::has_instances>(scene.triangles, ray, query);
     return query.result();
@@ -68,7 +77,9 @@ PT_HD Hit closest_triangle(const Scene& scene, const Ray& ray, float t_max, std:
 
 template <class Traits>
 PT_HD bool any_triangle(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key) {
-  if constexpr (Traits::has_masks) {
+  if constexpr (Traits::accel == Accel::any) {
+    return any_triangle_any<Traits::has_masks>(scene, ray, t_max, ray_key);
+  } else if constexpr (Traits::has_masks) {
     MaskedQuery<AnyTriangle, MaskTest> query(0.0f, t_max, {scene, ray_key});
     traverse_triangles<Traits::accel, Traits::has_instances>(scene.triangles, ray, query);
     return query.result();

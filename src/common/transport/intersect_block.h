@@ -15,12 +15,11 @@ struct BlockTraits {
   bool has_media = false;  ///< no matter to rays
 };
 
-/// Whether rays of such scenes are traced in blocks: where that is another way to trace them, so
-/// that nothing need be compiled for one ray as well.
-template <class Traits>
-inline constexpr bool traces_blocks = (Traits::has_masks ? Traits::accel == Accel::cwbvh
-                                                         : Traits::accel == Accel::brute ||
-                                                               Traits::accel == Accel::cwbvh_avx2);
+/// Whether rays of such scenes are traced in blocks: where that is another way to trace them.
+constexpr bool traces_blocks(const BlockTraits& traits) {
+  if (traits.has_masks) return traits.accel == Accel::cwbvh;
+  return traits.accel == Accel::brute || traits.accel == Accel::cwbvh_avx2;
+}
 
 /// Rays that have a key for masks (path_hash).
 using MaskedRays = Traits<Accel::cwbvh, Geometry::mixed, Lighting::sky, true>;

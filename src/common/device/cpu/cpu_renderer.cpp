@@ -54,9 +54,10 @@ void StageTimer::add(const StageTimer& other, double share) {
 
 namespace {
 
-Scene seeded_view(const SceneData& scene, const ImageSettings& settings) {
-  Scene view = host_view(scene, settings.width, settings.height);
-  view.mask_seed = mask_seed(settings.seed);
+Scene seeded_view(const SceneData& scene, const ExecutionPlan& plan) {
+  Scene view = host_view(scene, plan.width, plan.height);
+  view.triangles.accel = plan.traversal;
+  view.mask_seed = mask_seed(plan.seed);
   return view;
 }
 

@@ -191,6 +191,7 @@ Scene host_view(const SceneData& scene, int width, int height) {
   view.primitives.half_scale = scene.half_scale;
   view.light_count = count(scene.lights);
   view.triangles = scene.tree.view();
+  view.triangles.accel = scene.traits.accel;
   view.triangles.embree = scene.embree.get();
   view.light_selector.count = count(scene.light_list.selection);
   view.light_selector.table_first = scene.light_list.table_first;
