@@ -24,6 +24,30 @@ TEST(Dispatch, EveryKindOfSceneFindsItself) {
   });
 }
 
+TEST(Dispatch, EveryRowOfTheTableHasAKernel) {
+  int scenes = 0;
+  for (const KernelRow& row : kernel_table) {
+    for (int accel = 0; accel < accel_count && !row.on_cuda; ++accel) {
+      for (const Lighting lighting : {Lighting::sky, Lighting::emitters, Lighting::full}) {
+        const SceneTraits traits{Accel{accel}, row.geometry, lighting,
+                                 row.extras >= Extras::with_masks,
+                                 row.extras >= Extras::with_media};
+        if (!row.accels.contains(traits.accel) || !row.lighting.contains(lighting)) continue;
+        dispatch_traits(CpuSceneKinds{}, traits, [&](auto kind) {
+          ++scenes;
+          constexpr SceneTraits kernel = decltype(kind)::value();
+          EXPECT_EQ(kernel.geometry, traits.geometry);
+          EXPECT_EQ(kernel.lighting, traits.lighting);
+          EXPECT_EQ(kernel.has_masks, traits.has_masks);
+          EXPECT_EQ(kernel.has_media, traits.has_media);
+          if (kernel.accel != Accel::any) EXPECT_EQ(kernel.accel, traits.accel);
+        });
+      }
+    }
+  }
+  EXPECT_EQ(scenes, 22);
+}
+
 void expect_no_kernel(const std::function<void()>& call, const std::string& traits) {
   try {
     call();
@@ -45,6 +69,13 @@ TEST(Dispatch, NamesTheTraitsThatHaveNoKernel) {
                    "--accel brute, geometry: spheres and quads, lights: all kinds");
   expect_no_kernel(call({Accel::embree, Geometry::mixed, Lighting::emitters}),
                    "--accel embree, geometry: triangles and others, lights: emitters");
+  // One kernel for all structures, but not for those that no row names.
+  expect_no_kernel(
+      [] {
+        dispatch_traits(CpuSceneKinds{}, {Accel::embree, Geometry::mixed, Lighting::full, true},
+                        [](auto) { FAIL() << "called"; });
+      },
+      "--accel embree");
 }
 
 TEST(Dispatch, ARenderWithoutAKernelIsNoBlackImage) {
