@@ -23,6 +23,7 @@ PT_HD_IN_KERNEL void trace_paths(const Scene& scene, const Source& source,
   PathState path;
   bool working = work.next(path.index, true);
   PathId id = samples.id_of(path.index);
+  set_time<Traits>(scene, id, path);
   typename Source::Stream random = source.open(id);
   Color radiance(0.0f);
   Ray ray;
@@ -36,7 +37,7 @@ PT_HD_IN_KERNEL void trace_paths(const Scene& scene, const Source& source,
       lanes_of(scene).at(path.rays).count(LanePoint::iteration);
       const Vec4 u = random.draw(scatter_block(path.rays));
       if (path.rays == 0) {
-        ray = generate_camera_path(scene, random, id.pixel, u);
+        ray = generate_camera_path<Traits::has_motion>(scene, random, id.pixel, u, path.time);
         extra.begin(path.index);
       } else {
         const EagerShading policy = eager_shading<Traits>(u, random, path);
@@ -66,6 +67,7 @@ PT_HD_IN_KERNEL void trace_paths(const Scene& scene, const Source& source,
         path = PathState{};
         path.index = path_index;
         id = samples.id_of(path_index);
+        set_time<Traits>(scene, id, path);
         random = source.open(id);
         radiance = Color(0.0f);
       }

@@ -29,7 +29,8 @@ class SerialRenderer : public CpuRenderer {
       auto random = source.open(id);
       PathState path;
       path.index = i;
-      const Ray ray = begin_path(scene_, id, random);
+      set_time<Traits>(scene_, id, path);
+      const Ray ray = begin_path<Traits::has_motion>(scene_, id, random, path.time);
       batch.store(path, follow_path<Traits>(scene_, ray, path, Color(0.0f), path_settings_, random,
                                             path_hash<Traits>(scene_, id)));
     }

@@ -14,13 +14,13 @@ void run_blocks_cpu(const PathRays& stage, const BlockTraits& traits, const Samp
 void run_blocks_cpu(const ShadowRays& stage, const BlockTraits& traits, const SampleBuffer& samples,
                     const Scene& scene, const StageQueues& queues);
 
-/// Whether the stage traces rays.
+/// Whether the stage traces rays, which some structures trace in blocks.
 template <class Stage>
-inline constexpr bool traces_rays_of = false;
+inline constexpr bool may_run_in_blocks = false;
 template <class Traits>
-inline constexpr bool traces_rays_of<IntersectRays<Traits>> = true;
+inline constexpr bool may_run_in_blocks<IntersectRays<Traits>> = !Traits::has_motion;
 template <class Traits>
-inline constexpr bool traces_rays_of<TraceShadowRays<Traits>> = true;
+inline constexpr bool may_run_in_blocks<TraceShadowRays<Traits>> = !Traits::has_motion;
 
 /// The traits of its rays.
 template <template <class> class Stage, class Traits>

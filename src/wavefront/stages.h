@@ -72,13 +72,15 @@ struct StageContext {
   PathSupply supply;
 };
 
-/// The camera ray of a path in a free slot.
-template <class Source>
+/// The camera ray of a path in a free slot. `has_motion`: as in Traits.
+template <bool has_motion = false, class Source>
 PT_HD void start_path(const Scene& scene, const StageContext<Source>& context, std::uint32_t slot,
                       std::uint32_t path_index) {
   const PathId id = context.samples.id_of(path_index);
   auto random = context.source.open(id);
-  const Ray ray = begin_path(scene, id, random);
+  float time = 0.0f;
+  if constexpr (has_motion) time = shutter_time(scene.shutter_times, scene.mask_seed, id);
+  const Ray ray = begin_path<has_motion>(scene, id, random, time);
   context.source.close(id, random);
   context.pool.store_new_path(slot, ray, path_index);
   if constexpr (carries_extra<Source>) context.pool.extra.begin(slot, path_index);
@@ -144,7 +146,8 @@ PT_HD void carry_extra(const PathPool& pool, const SampleBuffer& samples, std::u
   }
 }
 
-template <class Source>
+/// `has_motion`: as in Traits.
+template <class Source, bool has_motion = false>
 struct GeneratePaths {
   static constexpr StageId id = StageId::generate;
   static constexpr SphereAccess spheres = SphereAccess::once;
@@ -162,7 +165,7 @@ struct GeneratePaths {
       context.ray_queue[counters->first_ray + counters->live + rank] = slot;
     }
     const std::uint32_t path_index = counters->first_path + rank;
-    start_path(scene, context, slot, path_index);
+    start_path<has_motion>(scene, context, slot, path_index);
     if (has_lights) store_wide(&context.samples.samples[path_index], Sample{});
     return {StageId::intersect};
   }
@@ -195,12 +198,13 @@ struct RepeatPaths {
 /// What tracing depends on: scenes that differ in their light or in how grids are stored share its
 /// kernels.
 template <class T>
-using RayTraits = Traits<T::accel, T::geometry, Lighting::sky, T::has_masks, T::has_media>;
+using RayTraits =
+    Traits<T::accel, T::geometry, Lighting::sky, T::has_masks, T::has_media, false, T::has_motion>;
 
 /// The same of shadow rays, which are attenuated by media.
 template <class T>
-using ShadowRayTraits =
-    Traits<T::accel, T::geometry, Lighting::sky, T::has_masks, T::has_media, T::has_sparse>;
+using ShadowRayTraits = Traits<T::accel, T::geometry, Lighting::sky, T::has_masks, T::has_media,
+                               T::has_sparse, T::has_motion>;
 
 /// The next rays of paths: what is traced, and what becomes of a path when its hit is known.
 struct PathRays {
@@ -236,9 +240,12 @@ struct IntersectRays : PathRays {
       const PathState path = pool.load_path_id(slot);
       key = next_ray_key(scene, path_hash<Traits>(scene, samples.id_of(path.index)), path.rays);
     }
+    PathState timed;
+    if constexpr (Traits::has_motion)
+      set_time<Traits>(scene, samples.id_of(pool.load_path_id(slot).index), timed);
     Ray ray = pool.load_ray(slot);
     set_lanes(ray, pool.path_lanes(lanes_of(scene), slot));
-    const Hit hit = intersect_closest<Traits>(scene, ray, key);
+    const Hit hit = intersect_closest<Traits>(scene, ray, key, timed.time);
     if constexpr (Traits::has_media) {
       if (pool.is_in_medium(slot)) {
         pool.store_hit(slot, hit);
@@ -374,6 +381,7 @@ struct ShadeSurface {
     PathState path = pool.load_path(slot, ray);
     set_lanes(ray, lanes_of(scene).at(path.rays));
     if constexpr (Traits::has_media) pool.load_medium(slot, path);
+    if constexpr (Traits::has_motion) set_time<Traits>(scene, samples.id_of(path.index), path);
     ++path.rays;
     const Hit hit = pool.load_hit(slot);
     PoolSink<streams, Traits::has_media> sink{pool, samples, slot, has_lights};
@@ -476,7 +484,9 @@ struct TraceShadowRays : ShadowRays {
       shadow.radiance = multiply_rounded(shadow.radiance, passed);
       return finish(path_index, shadow, false);
     }
-    return finish(path_index, shadow, intersect_shadow<Traits>(scene, shadow, key));
+    PathState timed;
+    if constexpr (Traits::has_motion) set_time<Traits>(scene, samples.id_of(path_index), timed);
+    return finish(path_index, shadow, intersect_shadow<Traits>(scene, shadow, key, timed.time));
   }
 };
 
@@ -510,7 +520,8 @@ struct FollowPaths {
     }
     const PathId id_of_path = samples.id_of(path.index);
     auto random = source.open(id_of_path);
-    if (starts_paths) ray = begin_path(scene, id_of_path, random);
+    set_time<Traits>(scene, id_of_path, path);
+    if (starts_paths) ray = begin_path<Traits::has_motion>(scene, id_of_path, random, path.time);
     if constexpr (carries_extra<Source>) {
       if (starts_paths) pool.extra.begin(slot, path.index);
     }

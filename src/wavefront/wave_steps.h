@@ -39,7 +39,7 @@ void repeat_paths(Executor& execute, const WaveBuffers& b, const StageContext<So
 template <class Traits, class Source, class Executor>
 void generate_paths(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
   if (context.supply.has_chains()) return;
-  execute.run(GeneratePaths<Source>{context, Traits::has_lights},
+  execute.run(GeneratePaths<Source, Traits::has_motion>{context, Traits::has_lights},
               b.stage_queues(StageId::generate, &b.counters->generate, b.pool.tag));
 }
 

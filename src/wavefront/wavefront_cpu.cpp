@@ -139,7 +139,7 @@ class CpuExecutor {
     if (*queues.count == 0) return;
     part_.timer.time(to_string(id_of(stage)), [&] {
       if constexpr (shades_in_blocks<Stage>) return shade_blocks_cpu(stage, scene_, queues);
-      if constexpr (traces_rays_of<Stage>) {
+      if constexpr (may_run_in_blocks<Stage>) {
         const BlockTraits traits = block_traits(stage, scene_);
         // With media a block's shadow rays end at the first surface.
         if (traces_blocks(traits) && !(traits.has_media && has_open_boundaries_))

@@ -4,6 +4,7 @@
 
 #include "common/accel/slab_test.h"
 #include "common/accel/triangle_tree.h"
+#include "common/geometry/motion.h"
 #include "common/geometry/ray.h"
 
 namespace pt {
@@ -146,6 +147,44 @@ class MaskedQuery : public Query {
  private:
   Mask mask_;
 };
+
+/// A placed group of triangles as it lies at `time`. Its bounds are those of the whole motion.
+PT_HD InstanceRecord placed_at(InstanceRecord instance, const Motion& motion, float time) {
+  if (motion.instances[instance.index].moves())
+    instance.to_object = inverse(motion.to_world(instance.index, time));
+  return instance;
+}
+
+/// A query about what lies where at `time`.
+template <class Query>
+class MovingQuery : public Query {
+ public:
+  PT_HD MovingQuery(float t_min, float t_max, const Motion& motion, float time)
+      : Query(t_min, t_max), motion_(motion), time_(time) {}
+
+  PT_HD InstanceRecord placed(const InstanceRecord& instance) const {
+    return placed_at(instance, motion_, time_);
+  }
+
+ private:
+  const Motion& motion_;
+  float time_;
+};
+
+template <class Query>
+inline constexpr bool is_moving_query = false;
+template <class Query>
+inline constexpr bool is_moving_query<MovingQuery<Query>> = true;
+
+/// The instance as a query sees it.
+template <class Query>
+PT_HD decltype(auto) placed_for(const Query& query, const InstanceRecord& instance) {
+  if constexpr (is_moving_query<Query>) {
+    return query.placed(instance);
+  } else {
+    return (instance);
+  }
+}
 
 /// A ray that is not finite or has no direction meets nothing. It must be sorted out before the
 /// traversal, in which such a ray would pass every box.

@@ -52,7 +52,7 @@ PT_HD Affine operator*(const Affine& a, const Affine& b) {
 }
 
 /// The inverse, computed in double precision; `a` must not be singular.
-inline Affine inverse(const Affine& a) {
+PT_HD Affine inverse(const Affine& a) {
   const auto at = [&](int i, int j) { return static_cast<double>(a.row[i % 3][j % 3]); };
   const auto cofactor = [&](int i, int j) {
     return at(i + 1, j + 1) * at(i + 2, j + 2) - at(i + 1, j + 2) * at(i + 2, j + 1);

@@ -33,6 +33,7 @@ class Planner {
 
   ExecutionPlan plan() {
     check_options_for_scene(o_, scene_);
+    check_motion(o_, scene_, device_);
     choose_kernels();
     choose_mode();
     if (is_on_gpu(Mode::megakernel)) choose_megakernel();
@@ -279,6 +280,7 @@ class Planner {
   /// blocks; for threads that follow rays alone binary ones are faster.
   std::pair<Accel, std::string> automatic_tree() const {
     const char* const alone = "rays are traced one by one, for which binary trees are faster";
+    if (scene_.has_motion) return {Accel::bvh2, "only binary trees know motion blur"};
     if (has_open_media()) return {Accel::bvh2, alone};
     if (is_on_gpu(Mode::megakernel)) {
       if (plan_.megakernel == MegakernelKind::loop) return {Accel::bvh2, alone};
@@ -442,9 +444,9 @@ class Planner {
     using enum LightSelection;
     const bool is_given = o_.light_selection != automatic;
     const auto emitters = static_cast<double>(scene_.emitters);
-    plan_.light_selection = is_given                     ? o_.light_selection
-                            : emitters > c_.few_emitters ? tree
-                                                         : power;
+    plan_.light_selection = is_given ? o_.light_selection
+                            : emitters > c_.few_emitters && !scene_.has_moving_emitters ? tree
+                                                                                        : power;
     if (!o_.nee) return;
     decide("light-selection", to_string(plan_.light_selection),
            is_given ? asked

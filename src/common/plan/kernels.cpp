@@ -96,7 +96,7 @@ class Change {
       add(accel, 2, accel_option(scene.accel), "--accel " + structures_of(row, " or "));
       if (scene.geometry != Geometry::spheres_and_quads)
         scene = general_traits(other, need.contents, scene.has_masks, scene.has_media,
-                               scene.has_sparse);
+                               scene.has_sparse, scene.has_motion);
       scene.accel = other;
     }
     is_possible_ = row.on_cuda == need.on_cuda && is_of_scene(row, scene) &&
@@ -147,9 +147,13 @@ using Cells = std::array<std::string, 9>;
 
 Cells cells_of(const KernelRow& row) {
   std::string scene = geometry_names[static_cast<int>(row.geometry)];
-  if (row.extras >= Extras::with_masks) scene += ", masks";
-  if (row.extras >= Extras::with_media) scene += ", media";
-  if (row.extras == Extras::with_sparse) scene += ", sparse grids";
+  if (row.extras == Extras::with_motion) {
+    scene += ", motion";
+  } else {
+    if (row.extras >= Extras::with_masks) scene += ", masks";
+    if (row.extras >= Extras::with_media) scene += ", media";
+    if (row.extras == Extras::with_sparse) scene += ", sparse grids";
+  }
   const std::string without = names_of(row.without, std::size(content_names), [](Content c) {
     return content_names[static_cast<int>(c)];
   });

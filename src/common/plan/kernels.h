@@ -69,8 +69,8 @@ constexpr EnumSet<ExtraRecords> if_built(EnumSet<ExtraRecords> records) {
 }
 
 /// What a kernel knows of a scene besides its geometry; each has all of those before. A CPU's
-/// kernels with media know sparse grids, too.
-enum class Extras { plain, with_masks, with_media, with_sparse };
+/// kernels with media know sparse grids, too. Those with motion have none of the others.
+enum class Extras { plain, with_masks, with_media, with_sparse, with_motion };
 
 /// What some kernels cannot have in a scene although its SceneTraits allow it.
 enum class Content { spheres, instances, open_boundaries };
@@ -122,6 +122,7 @@ inline constexpr KernelRow table[] = {
     {cpu,  {serial, loop, stages, fused}, trees | EnumSet{cwbvh_avx2, brute, embree}, mixed, full, plain, sampler},
     {cpu,  {serial, loop, stages, fused}, trees | brute, mixed, full, with_masks, sampler},
     {cpu,  {serial, loop, stages, fused}, {bvh2, cwbvh, brute}, mixed, full, with_media, sampler},
+    {cpu,  {serial, loop, stages, fused}, {bvh2, brute}, mixed, full, with_motion, sampler},
     {cuda, {loop, stages, fused}, trees, triangles, full, plain, sampler},
     {cuda, {loop, stages}, bvh2, mixed, full, plain, sampler},
     {cuda, {loop, stages}, bvh2, mixed, full, with_masks, sampler},
@@ -154,10 +155,11 @@ struct KernelNeed {
 };
 
 constexpr bool is_of_scene(const KernelRow& row, const SceneTraits& scene) {
+  const bool moves = row.extras == Extras::with_motion;
   return row.geometry == scene.geometry && row.lighting.contains(scene.lighting) &&
-         (row.extras >= Extras::with_masks) == scene.has_masks &&
-         (row.extras >= Extras::with_media) == scene.has_media &&
-         (row.extras == Extras::with_sparse) == scene.has_sparse;
+         (row.extras >= Extras::with_masks && !moves) == scene.has_masks &&
+         (row.extras >= Extras::with_media && !moves) == scene.has_media &&
+         (row.extras == Extras::with_sparse) == scene.has_sparse && moves == scene.has_motion;
 }
 
 constexpr bool serves(const KernelRow& row, const KernelNeed& need) {
@@ -188,12 +190,15 @@ constexpr bool traces_rays(SceneTraits scene, SceneMemory memory) {
 
 /// The traits of a scene whose kernels are not the paper's, in this structure.
 constexpr SceneTraits general_traits(Accel accel, EnumSet<Content> contents, bool has_masks,
-                                     bool has_media, bool has_sparse = false) {
-  const bool mixed = has_masks || has_media || accel == Accel::brute || accel == Accel::embree ||
+                                     bool has_media, bool has_sparse = false,
+                                     bool has_motion = false) {
+  const bool mixed = has_masks || has_media || has_motion || accel == Accel::brute ||
+                     accel == Accel::embree ||
                      contents.intersects({Content::spheres, Content::instances});
   return {accel,          mixed ? Geometry::mixed : Geometry::triangles,
           Lighting::full, has_masks || has_media,
-          has_media,      has_sparse};
+          has_media,      has_sparse,
+          has_motion};
 }
 
 /// Which parts of a need the user asked for; the plan chose the others.

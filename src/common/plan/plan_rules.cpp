@@ -103,6 +103,7 @@ std::string scene_text(const KernelNeed& need, const Options& o, const SceneProp
       {is_specialized && scene.has_emitters, "emitters"},
       {!is_specialized && scene.spheres > 0, "spheres"},
       {scene.instances > 0, "instances"},
+      {scene.has_motion, "motion"},
       {scene.has_masks, "masks, a far plane or hidden emitters"},
       {scene.has_media, "media"},
       {need.scene.has_sparse, "sparse grids"},
@@ -209,7 +210,7 @@ KernelNeed need_of(const ExecutionPlan& plan, const Options& o, const ScenePrope
     if (on_cuda) need.memory = plan.scene_memory;
   } else {
     need.scene = general_traits(plan.traversal, need.contents, scene.has_masks, scene.has_media,
-                                on_cuda && scene.has_sparse);
+                                on_cuda && scene.has_sparse, scene.has_motion);
     need.sources = o.rng == RngKind::philox ? NumberSource::sampler : NumberSource::xorwow;
     if (o.scene_memory != SceneMemory::automatic) need.memory = o.scene_memory;
   }
@@ -248,6 +249,23 @@ void check_options_for_scene(const Options& options, const SceneProperties& scen
     throw Error(fmt::format("--{} {}: {}", rule.option, value,
                             fmt::format(fmt::runtime(rule.problem), scene.name)));
   }
+}
+
+void check_motion(const Options& o, const SceneProperties& scene, const DeviceProperties& device) {
+  if (!scene.has_motion) return;
+  const auto refuse = [&](const char* what, const char* expected) {
+    throw Error(fmt::format("scene '{}' moves while the shutter is open: {}; expected {}",
+                            scene.name, what, expected));
+  };
+  if (device.is_cuda) refuse("CUDA has no kernels for motion blur", "--device cpu");
+  if (o.integrator == IntegratorKind::mlt)
+    refuse("--integrator mlt knows no motion blur", "--integrator path");
+  if (scene.has_media)
+    refuse("motion blur knows no media and no thin glass", "a scene without them");
+  if (scene.has_masks)
+    refuse("motion blur knows no masks, far planes or hidden emitters", "a scene without them");
+  if (scene.has_moving_emitters && o.light_selection == LightSelection::tree)
+    refuse("--light-selection tree knows no lights that move", "power or uniform");
 }
 
 void check_optix(const Options& o, const SceneProperties& scene, const DeviceProperties& device,

@@ -23,6 +23,10 @@ KernelNeed need_of(const ExecutionPlan& plan, const Options& options, const Scen
 void check_plan(const ExecutionPlan& plan, const Options& options, const SceneProperties& scene,
                 const DeviceProperties& device);
 
+/// What a scene that moves cannot be had with. Throws Error.
+void check_motion(const Options& options, const SceneProperties& scene,
+                  const DeviceProperties& device);
+
 /// What --accel optix cannot be had with. Throws Error.
 void check_optix(const Options& options, const SceneProperties& scene,
                  const DeviceProperties& device, const ExecutionPlan& plan);

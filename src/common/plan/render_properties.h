@@ -19,11 +19,13 @@ struct SceneProperties {
   std::size_t instances = 0;
   std::size_t tree_groups = 1;       ///< of meshes; each gets a tree
   bool is_primitive_only = false;    ///< nothing that the paper's scenes have not
+  bool has_motion = false;           ///< something moves while the shutter is open
   bool has_masks = false;            ///< triangles that not all rays meet
   bool has_media = false;            ///< between surfaces
   bool has_sparse = false;           ///< grids of media
   bool has_open_boundaries = false;  ///< surfaces may let light through
   bool has_emitters = false;         ///< surfaces that shine
+  bool has_moving_emitters = false;  ///< some of them, with has_motion
   bool has_rough_conductors = false;
   std::uint32_t bsdf_kinds = 0;  ///< a bit for each MaterialKind that a surface has
   std::size_t emitters = 0;      ///< lights that can be sampled

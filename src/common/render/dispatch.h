@@ -74,7 +74,7 @@ struct CpuKernels {
 
 namespace detail {
 
-inline constexpr int traits_count = accel_count * 3 * 3 * 4;
+inline constexpr int traits_count = accel_count * 3 * 3 * 5;
 
 /// All combinations of kernels (Extras), by number.
 constexpr SceneTraits traits_at(int i) {
@@ -82,6 +82,8 @@ constexpr SceneTraits traits_at(int i) {
   traits.accel = Accel{i % accel_count}, i /= accel_count;
   traits.geometry = Geometry{i % 3}, i /= 3;
   traits.lighting = Lighting{i % 3}, i /= 3;
+  traits.has_motion = i == static_cast<int>(Extras::with_motion);
+  if (traits.has_motion) return traits;
   traits.has_masks = i > 0, traits.has_media = i > 1, traits.has_sparse = i > 2;
   return traits;
 }
@@ -102,8 +104,9 @@ consteval int selected(int n) {
 }
 
 template <int i>
-using TraitsAt = Traits<traits_at(i).accel, traits_at(i).geometry, traits_at(i).lighting,
-                        traits_at(i).has_masks, traits_at(i).has_media, traits_at(i).has_sparse>;
+using TraitsAt =
+    Traits<traits_at(i).accel, traits_at(i).geometry, traits_at(i).lighting, traits_at(i).has_masks,
+           traits_at(i).has_media, traits_at(i).has_sparse, traits_at(i).has_motion>;
 
 template <class Selection, int... n>
 TypeList<TraitsAt<selected<Selection>(n)>...> traits_of(std::integer_sequence<int, n...>);

@@ -53,10 +53,11 @@ PT_HD Color sampled_albedo(const Scene& scene, const Ray& ray, Surface surface, 
 
 /// `u` as for the path's first scattering.
 template <class Traits>
-PT_HD FirstHit first_hit(const Scene& scene, const Ray& ray, const Hit& hit, const Vec4& u) {
+PT_HD FirstHit first_hit(const Scene& scene, const Ray& ray, const Hit& hit, const Vec4& u,
+                         float time = 0.0f) {
   FirstHit first;
   if (hit.is_miss()) return first;
-  const Surface surface = surface_at<Traits>(scene, ray, hit);
+  const Surface surface = surface_at<Traits>(scene, ray, hit, time);
   first.material = surface.material_index;
   first.distance = hit.t;
   first.position = surface.point.position;
@@ -78,7 +79,7 @@ PT_HD FirstHit first_hit(const Scene& scene, const Ray& ray, const Hit& hit, con
     first.primitive = primitives + triangle.id;
     if (is_placed<Traits>(scene)) first.instance = scene.triangles.instances[hit.instance].index;
     if (!surface.material.is(Material::textured)) {
-      first.uv = triangle_uv<Traits>(scene, ray, hit, triangle);
+      first.uv = triangle_uv<Traits>(scene, ray, hit, triangle, time);
     }
     if ((triangle.attributes & TriangleAttributes::uvs) != 0) first.uv.y = 1.0f - first.uv.y;
   }
@@ -135,6 +136,18 @@ PT_HD FirstHit first_hit_of_path(const Scene& scene, const Source& source, const
   auto random = source.open(id);
   const Vec4 u = random.draw(scatter_block(0));
   is_negative = scene.filter.is_negative(u.x, u.y);
+  PathState path;
+  set_time<Traits>(scene, id, path);
+  if constexpr (Traits::has_motion) {
+    const Camera camera = camera_at(scene, path.time);
+    const Ray ray = generate_camera_path(scene, camera, id.pixel, u);
+    const Hit hit = intersect_closest<Traits>(scene, ray, 0, path.time);
+    FirstHit first =
+        first_hit<ShadingTraits<Traits>>(scene, ray, hit, random.draw(scatter_block(1)), path.time);
+    if (!hit.is_miss()) first.distance += camera.distance_of_near_plane(ray.direction);
+    first.collision = first.distance;
+    return first;
+  }
   Ray ray = generate_camera_path(scene, id.pixel, u);
   const float near_plane = scene.camera.distance_of_near_plane(ray.direction);
   const std::uint32_t key = path_hash<Traits>(scene, id);

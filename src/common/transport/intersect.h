@@ -55,16 +55,24 @@ PT_HD Hit closest_primitive_in_view(const Scene& scene, const Ray& ray, std::uin
 
 // In the structure that the scene names, on the CPU alone: compiled once, for kernels of any
 // structure (intersect_any.cpp).
-template <bool has_masks>
-Hit closest_triangle_any(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key);
-template <bool has_masks>
-bool any_triangle_any(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key);
+template <bool has_masks, bool has_motion>
+Hit closest_triangle_any(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key,
+                         float time);
+template <bool has_masks, bool has_motion>
+bool any_triangle_any(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key,
+                      float time);
 
-/// Both among the triangles; `ray_key` is for masks.
+/// Both among the triangles; `ray_key` is for masks, `time` for what moves.
 template <class Traits>
-PT_HD Hit closest_triangle(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key) {
+PT_HD Hit closest_triangle(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key,
+                           float time) {
   if constexpr (Traits::accel == Accel::any) {
-    return closest_triangle_any<Traits::has_masks>(scene, ray, t_max, ray_key);
+    return closest_triangle_any<Traits::has_masks, Traits::has_motion>(scene, ray, t_max, ray_key,
+                                                                       time);
+  } else if constexpr (Traits::has_motion) {
+    MovingQuery<ClosestTriangle> query(0.0f, t_max, *scene.motion, time);
+    traverse_triangles<Traits::accel, Traits::has_instances>(scene.triangles, ray, query);
+    return query.result();
   } else if constexpr (Traits::has_masks) {
     MaskedQuery<ClosestTriangle, MaskTest> query(0.0f, t_max, {scene, ray_key});
     traverse_triangles<Traits::accel, Traits::has_instances>(scene.triangles, ray, query);
@@ -76,9 +84,15 @@ PT_HD Hit closest_triangle(const Scene& scene, const Ray& ray, float t_max, std:
 }
 
 template <class Traits>
-PT_HD bool any_triangle(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key) {
+PT_HD bool any_triangle(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key,
+                        float time) {
   if constexpr (Traits::accel == Accel::any) {
-    return any_triangle_any<Traits::has_masks>(scene, ray, t_max, ray_key);
+    return any_triangle_any<Traits::has_masks, Traits::has_motion>(scene, ray, t_max, ray_key,
+                                                                   time);
+  } else if constexpr (Traits::has_motion) {
+    MovingQuery<AnyTriangle> query(0.0f, t_max, *scene.motion, time);
+    traverse_triangles<Traits::accel, Traits::has_instances>(scene.triangles, ray, query);
+    return query.result();
   } else if constexpr (Traits::has_masks) {
     MaskedQuery<AnyTriangle, MaskTest> query(0.0f, t_max, {scene, ray_key});
     traverse_triangles<Traits::accel, Traits::has_instances>(scene.triangles, ray, query);
@@ -88,9 +102,11 @@ PT_HD bool any_triangle(const Scene& scene, const Ray& ray, float t_max, std::ui
   }
 }
 
-/// `ray_key` (next_ray_key) decides what masks let through; read in scenes with masks alone.
+/// `ray_key` (next_ray_key) decides what masks let through; read in scenes with masks alone. `time`
+/// is the path's, read in scenes that move alone.
 template <class Traits>
-PT_HD Hit intersect_closest(const Scene& scene, const Ray& ray, std::uint32_t ray_key = 0) {
+PT_HD Hit intersect_closest(const Scene& scene, const Ray& ray, std::uint32_t ray_key = 0,
+                            float time = 0.0f) {
   lanes_of(ray).count(LanePoint::intersect);
   if constexpr (Traits::geometry == Geometry::spheres_and_quads) {
     return closest_primitive<Traits>(scene, ray);
@@ -104,7 +120,7 @@ PT_HD Hit intersect_closest(const Scene& scene, const Ray& ray, std::uint32_t ra
       nearest = closest_primitive<Traits>(scene, ray);
       t_max = nearest.t;
     }
-    Hit hit = closest_triangle<Traits>(scene, ray, t_max, ray_key);
+    Hit hit = closest_triangle<Traits>(scene, ray, t_max, ray_key, time);
     if (hit.is_miss()) return nearest;
     hit.primitive += scene.primitives.count();
     return hit;
@@ -113,8 +129,8 @@ PT_HD Hit intersect_closest(const Scene& scene, const Ray& ray, std::uint32_t ra
 
 /// True when something lies between the shadow ray's ends. `ray_key`: shadow_ray_key.
 template <class Traits>
-PT_HD bool intersect_shadow(const Scene& scene, const ShadowRay& shadow,
-                            std::uint32_t ray_key = 0) {
+PT_HD bool intersect_shadow(const Scene& scene, const ShadowRay& shadow, std::uint32_t ray_key = 0,
+                            float time = 0.0f) {
   lanes_of(shadow.ray).count(LanePoint::intersect);
   if constexpr (Traits::geometry == Geometry::spheres_and_quads) {
     return any_primitive<Traits>(scene, shadow.ray, shadow.distance);
@@ -123,7 +139,7 @@ PT_HD bool intersect_shadow(const Scene& scene, const ShadowRay& shadow,
         any_primitive<Traits>(scene, shadow.ray, shadow.distance)) {
       return true;
     }
-    return any_triangle<Traits>(scene, shadow.ray, shadow.distance, ray_key);
+    return any_triangle<Traits>(scene, shadow.ray, shadow.distance, ray_key, time);
   }
 }
 

@@ -7,35 +7,44 @@ namespace pt {
 namespace {
 
 /// A scene's rays in one structure, as kernels have them that are compiled for it.
-template <Accel accel, bool instanced, bool has_masks>
-using Rays =
-    Traits<accel, instanced ? Geometry::mixed : Geometry::triangles, Lighting::full, has_masks>;
+template <Accel accel, bool instanced, bool has_masks, bool has_motion>
+using Rays = Traits<accel, instanced ? Geometry::mixed : Geometry::triangles, Lighting::full,
+                    has_masks, false, false, has_motion>;
 
 template <class Traits>
 struct Closest {
   using Result = Hit;
-  static Hit trace(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key) {
-    return closest_triangle<Traits>(scene, ray, t_max, ray_key);
+  static Hit trace(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key,
+                   float time) {
+    return closest_triangle<Traits>(scene, ray, t_max, ray_key, time);
   }
 };
 
 template <class Traits>
 struct Any {
   using Result = bool;
-  static bool trace(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key) {
-    return any_triangle<Traits>(scene, ray, t_max, ray_key);
+  static bool trace(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key,
+                    float time) {
+    return any_triangle<Traits>(scene, ray, t_max, ray_key, time);
   }
 };
 
 template <class Result>
-using Trace = Result (*)(const Scene&, const Ray&, float, std::uint32_t);
+using Trace = Result (*)(const Scene&, const Ray&, float, std::uint32_t, float);
 
-/// Null where no plan has it: kernels with masks are of few structures (plan/kernels.h).
-template <template <class> class Query, Accel accel, bool instanced, bool has_masks>
+/// Whether plans have kernels for it (plan/kernels.h).
+constexpr bool is_traced(Accel accel, bool has_masks, bool has_motion) {
+  if (has_motion) return accel == Accel::brute || accel == Accel::bvh2;
+  if (has_masks) return accel != Accel::embree && accel != Accel::cwbvh_avx2;
+  return true;
+}
+
+/// Null where it is not traced.
+template <template <class> class Query, Accel accel, bool instanced, bool has_masks,
+          bool has_motion>
 constexpr auto trace_of() {
-  using Kind = Query<Rays<accel, instanced, has_masks>>;
-  constexpr bool is_unmasked = accel == Accel::embree || accel == Accel::cwbvh_avx2;
-  if constexpr (accel == Accel::any || (has_masks && is_unmasked)) {
+  using Kind = Query<Rays<accel, instanced, has_masks, has_motion>>;
+  if constexpr (accel == Accel::any || !is_traced(accel, has_masks, has_motion)) {
     return Trace<typename Kind::Result>{nullptr};
   } else {
     return &Kind::trace;
@@ -43,37 +52,44 @@ constexpr auto trace_of() {
 }
 
 /// By structure; a function for each, so that its loop is optimised alone.
-template <template <class> class Query, bool instanced, bool has_masks>
+template <template <class> class Query, bool instanced, bool... extras>
 constexpr auto traces_of() {
   return []<int... i>(std::integer_sequence<int, i...>) {
-    return std::array{trace_of<Query, Accel{i}, instanced, has_masks>()...};
+    return std::array{trace_of<Query, Accel{i}, instanced, extras...>()...};
   }
   (std::make_integer_sequence<int, accel_count>{});
 }
 
-template <template <class> class Query, bool has_masks>
-auto trace_any(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key) {
-  static constexpr auto plain = traces_of<Query, false, has_masks>();
-  static constexpr auto instanced = traces_of<Query, true, has_masks>();
+template <template <class> class Query, bool... extras>
+auto trace_any(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key, float time) {
+  static constexpr auto plain = traces_of<Query, false, extras...>();
+  static constexpr auto instanced = traces_of<Query, true, extras...>();
   const auto& traces = scene.triangles.instance_count > 0 ? instanced : plain;
-  return traces[static_cast<std::size_t>(scene.triangles.accel)](scene, ray, t_max, ray_key);
+  return traces[static_cast<std::size_t>(scene.triangles.accel)](scene, ray, t_max, ray_key, time);
 }
 
 }  // namespace
 
-template <bool has_masks>
-Hit closest_triangle_any(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key) {
-  return trace_any<Closest, has_masks>(scene, ray, t_max, ray_key);
+template <bool has_masks, bool has_motion>
+Hit closest_triangle_any(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key,
+                         float time) {
+  return trace_any<Closest, has_masks, has_motion>(scene, ray, t_max, ray_key, time);
 }
 
-template <bool has_masks>
-bool any_triangle_any(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key) {
-  return trace_any<Any, has_masks>(scene, ray, t_max, ray_key);
+template <bool has_masks, bool has_motion>
+bool any_triangle_any(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key,
+                      float time) {
+  return trace_any<Any, has_masks, has_motion>(scene, ray, t_max, ray_key, time);
 }
 
-template Hit closest_triangle_any<false>(const Scene&, const Ray&, float, std::uint32_t);
-template Hit closest_triangle_any<true>(const Scene&, const Ray&, float, std::uint32_t);
-template bool any_triangle_any<false>(const Scene&, const Ray&, float, std::uint32_t);
-template bool any_triangle_any<true>(const Scene&, const Ray&, float, std::uint32_t);
+#define PT_ANY(has_masks, has_motion)                                                       \
+  template Hit closest_triangle_any<has_masks, has_motion>(const Scene&, const Ray&, float, \
+                                                           std::uint32_t, float);           \
+  template bool any_triangle_any<has_masks, has_motion>(const Scene&, const Ray&, float,    \
+                                                        std::uint32_t, float);
+PT_ANY(false, false)
+PT_ANY(true, false)
+PT_ANY(false, true)
+#undef PT_ANY
 
 }  // namespace pt

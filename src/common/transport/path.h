@@ -33,6 +33,8 @@ struct PathState {
 
   PathMedium medium;
 
+  float time = 0.0f;  ///< in the shutter's interval; only in scenes that move, and in no slot
+
   static constexpr float delta_distribution = HUGE_VALF;  ///< not found by light sampling
 
   /// Rays that max_depth counts.

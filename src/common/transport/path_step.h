@@ -20,11 +20,12 @@
 
 namespace pt {
 
-/// The first step: the camera ray of a path, by block 0 of its numbers.
-template <class Stream>
-PT_HD Ray begin_path(const Scene& scene, const PathId& id, Stream& random) {
+/// The first step: the camera ray of a path, by block 0 of its numbers. `time`: see
+/// generate_camera_path().
+template <bool has_motion = false, class Stream>
+PT_HD Ray begin_path(const Scene& scene, const PathId& id, Stream& random, float time = 0.0f) {
   const Vec4 u = random.draw(scatter_block(0));
-  return generate_camera_path(scene, random, id.pixel, u);
+  return generate_camera_path<has_motion>(scene, random, id.pixel, u, time);
 }
 
 /// The ray has left the scene.
@@ -133,7 +134,7 @@ struct PathRegisters {
       radiance = add_rounded(radiance, multiply_rounded(shadow.radiance, transmittance));
       return;
     }
-    if (!intersect_shadow<Traits>(scene, shadow, key)) {
+    if (!intersect_shadow<Traits>(scene, shadow, key, path.time)) {
       radiance = add_rounded(radiance, shadow.radiance);
     }
   }

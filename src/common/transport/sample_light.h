@@ -54,16 +54,35 @@ PT_HD IncidentLight sample_listed_light(const Scene& scene, const Light& light, 
   return incident;
 }
 
+/// A light of the list; where it moves, a triangle, as it lies at `time`.
+template <class Traits>
+PT_HD Light light_at(const Scene& scene, std::uint32_t index, float time) {
+  const Light light = load_wide(&scene.light_selector.lights[index]);
+  if constexpr (Traits::has_motion) {
+    const std::uint32_t instance = scene.motion->instance_of(index);
+    if (instance != Motion::none) {
+      auto triangle = light.as<TriangleLight>();
+      const Affine to_world = scene.motion->to_world(instance, time);
+      triangle.vertex = to_world.point(triangle.vertex);
+      triangle.edge1 = to_world.vector(triangle.edge1);
+      triangle.edge2 = to_world.vector(triangle.edge2);
+      return Light::of(triangle);
+    }
+  }
+  return light;
+}
+
 /// Any light (Lighting::full), chosen by the selector.
+template <class Traits>
 PT_HD IncidentLight sample_selected_light(const Scene& scene, const Vec3& from, Receiver receiver,
-                                          const Vec4& u) {
+                                          const Vec4& u, float time) {
   const LightChoice choice = scene.light_selector.sample(from, receiver, u.z, u.w);
   if (choice.light == environment_light) {
     const EnvironmentSample s = sample_environment(scene.environment, u.x, u.y, u.w);
     return {s.wi, beyond_scene * s.wi, s.radiance, choice.pmf * s.pdf};
   }
   if (choice.light == no_light) return {};
-  const Light light = load_wide(&scene.light_selector.lights[choice.light]);
+  const Light light = light_at<Traits>(scene, choice.light, time);
   IncidentLight incident = sample_listed_light(scene, light, from, u.x, u.y);
   incident.pdf *= choice.pmf;
   return incident;
@@ -71,9 +90,9 @@ PT_HD IncidentLight sample_selected_light(const Scene& scene, const Vec3& from, 
 
 template <class Traits>
 PT_HD IncidentLight sample_light(const Scene& scene, const Vec3& from, Receiver receiver,
-                                 const Vec4& u) {
+                                 const Vec4& u, float time = 0.0f) {
   if constexpr (Traits::lighting == Lighting::emitters) return sample_emitter(scene, from, u);
-  return sample_selected_light(scene, from, receiver, u);
+  return sample_selected_light<Traits>(scene, from, receiver, u, time);
 }
 
 /// LightSelector::pmf, not inlined: few paths hit an emitter, and it is as long as sample().
@@ -85,7 +104,8 @@ PT_NOINLINE inline float light_pmf_noinline(LightSelector selector, Vec3 point, 
 /// The density per solid angle with which sample_light would have sampled the point of an emitter
 /// that a ray hit.
 template <class Traits>
-PT_HD float light_pdf(const Scene& scene, const Ray& ray, Receiver receiver, const Hit& hit) {
+PT_HD float light_pdf(const Scene& scene, const Ray& ray, Receiver receiver, const Hit& hit,
+                      float time = 0.0f) {
   if constexpr (Traits::lighting == Lighting::emitters) {
     return emitter_pdf(scene, ray, hit);
   } else {
@@ -101,7 +121,7 @@ PT_HD float light_pdf(const Scene& scene, const Ray& ray, Receiver receiver, con
         is_placed<Traits>(scene) ? scene.triangles.instances[hit.instance].index : 0;
     const std::uint32_t light_index = scene.light_map.of_triangle(hit_triangle.id, instance);
     // As it was sampled: in the world, relative to its own first corner.
-    const auto light = load_wide(&selector.lights[light_index]).as<TriangleLight>();
+    const auto light = light_at<Traits>(scene, light_index, time).template as<TriangleLight>();
     return light_pmf_noinline(selector, ray.origin, receiver, light_index) *
            TriangleSampler(light.vertex - ray.origin, light.edge1, light.edge2)
                .pdf(ray.direction, hit.t);

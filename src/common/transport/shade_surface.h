@@ -49,9 +49,9 @@ PT_HD Color emitted_radiance(const Scene& scene, const Ray& ray, const Hit& hit,
     Hit from_there = hit;
     seen.origin = add_scaled(ray.origin, -path.medium.travelled, ray.direction);
     from_there.t = add_rounded(hit.t, path.medium.travelled);
-    pdf = light_pdf<Traits>(scene, seen, path.receiver, from_there);
+    pdf = light_pdf<Traits>(scene, seen, path.receiver, from_there, path.time);
   } else {
-    pdf = light_pdf<Traits>(scene, ray, path.receiver, hit);
+    pdf = light_pdf<Traits>(scene, ray, path.receiver, hit, path.time);
   }
   return path.beta * Le * direction_weight(mis, path.bsdf_pdf, pdf);
 }
@@ -176,7 +176,7 @@ PT_HD_IN_KERNEL Scattering surface_scattering(const Scene& scene, const Ray& ray
   const MisHeuristic mis = full ? settings.mis : MisHeuristic::power;
   const DirectionSampling directions = full ? settings.directions : DirectionSampling::bsdf;
   lanes_of(ray).count(LanePoint::shade_surface);
-  Surface surface = surface_at<Traits>(scene, ray, hit);
+  Surface surface = surface_at<Traits>(scene, ray, hit, path.time);
   if constexpr (Traits::has_media) {
     if (lets_through(scene, surface.material, surface.material_index, path.medium.id)) {
       if (!is_pane(surface.material)) return pass_boundary(scene, ray, surface, path);
@@ -214,7 +214,7 @@ PT_HD_IN_KERNEL Scattering surface_scattering(const Scene& scene, const Ray& ray
   if (asks) {
     lanes_of(ray).count(LanePoint::light);
     if (!full || scene.light_selector.has_tree()) path.receiver = receiver_of<Traits>(surface, ray);
-    incident = sample_light<Traits>(scene, from, path.receiver, policy.light());
+    incident = sample_light<Traits>(scene, from, path.receiver, policy.light(), path.time);
     if constexpr (Policy::aims) aim_at_light<Traits>(policy, surface, from, incident);
   }
   const Vec4 scatter = policy.scatter();

@@ -106,12 +106,27 @@ PT_HD Vec3 barycentric_at(const Ray& local, const Triangle& triangle) {
   return {1.0f - inside.b1 - inside.b2, inside.b1, inside.b2};
 }
 
+/// The instance of a hit; at `time`, where it moves.
+template <class Traits>
+PT_HD InstanceRecord instance_at(const Scene& scene, std::uint32_t instance, float time) {
+  const InstanceRecord record = load_wide(&scene.triangles.instances[instance]);
+  if constexpr (Traits::has_motion) return placed_at(record, *scene.motion, time);
+  return record;
+}
+template <class Traits>
+PT_HD Affine to_world_at(const Scene& scene, std::uint32_t index, float time) {
+  if constexpr (Traits::has_motion) {
+    if (scene.motion->instances[index].moves()) return scene.motion->to_world(index, time);
+  }
+  return load_wide(&scene.to_world[index]);
+}
+
 /// Where a ray that hit the triangle lies in textures, whether its material has one or not.
 template <class Traits>
-PT_HD Vec2 triangle_uv(const Scene& scene, const Ray& ray, const Hit& hit,
-                       const Triangle& triangle) {
+PT_HD Vec2 triangle_uv(const Scene& scene, const Ray& ray, const Hit& hit, const Triangle& triangle,
+                       float time = 0.0f) {
   const Ray local = is_placed<Traits>(scene)
-                        ? object_ray(load_wide(&scene.triangles.instances[hit.instance]), ray)
+                        ? object_ray(instance_at<Traits>(scene, hit.instance, time), ray)
                         : ray;
   const Vec3 b = barycentric_at(local, triangle);
   const bool has_uvs = (triangle.attributes & TriangleAttributes::uvs) != 0;
@@ -123,7 +138,8 @@ PT_HD Vec2 triangle_uv(const Scene& scene, const Ray& ray, const Hit& hit,
 /// what the intersection of the ray that leaves may round: on an axis-parallel plane through 0 the
 /// first is 0, but not the second.
 template <class Traits>
-PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hit) {
+PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hit,
+                               float time = 0.0f) {
   const std::uint32_t slot = hit.primitive - scene.primitives.count();
   const Triangle triangle = load_wide(&scene.triangles.triangles[slot]);
   const bool has_uvs = (triangle.attributes & TriangleAttributes::uvs) != 0;
@@ -135,7 +151,7 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
   InstanceRecord instance;
   Ray local = ray;
   if (placed) {
-    instance = load_wide(&scene.triangles.instances[hit.instance]);
+    instance = instance_at<Traits>(scene, hit.instance, time);
     local = object_ray(instance, ray);
   }
   const Vec3 b = barycentric_at(local, triangle);
@@ -148,7 +164,7 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
   Vec3 normal = cross_rounded(triangle.v1 - triangle.v0, triangle.v2 - triangle.v0);
   Vec3 shading_normal = has_normals ? corners.normal_at(b) : normal;
   if (placed) {
-    const Affine to_world = load_wide(&scene.to_world[instance.index]);
+    const Affine to_world = to_world_at<Traits>(scene, instance.index, time);
     position = to_world.point(position);
     extent = to_world.absolute(extent);
     size = to_world.absolute(size);
@@ -167,8 +183,14 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
   }
   if constexpr (Traits::lighting == Lighting::full) {
     if (surface.material.is(Material::tangents) && has_uvs) {
-      set_derivatives(triangle, corners, placed ? &scene.to_world[instance.index] : nullptr,
-                      surface);
+      if constexpr (Traits::has_motion) {
+        const Affine to_world =
+            placed ? to_world_at<Traits>(scene, instance.index, time) : Affine();
+        set_derivatives(triangle, corners, &to_world, surface);
+      } else {
+        set_derivatives(triangle, corners, placed ? &scene.to_world[instance.index] : nullptr,
+                        surface);
+      }
     }
   }
   return surface;
@@ -199,11 +221,11 @@ PT_NOINLINE inline Surface framed_sphere(const SphereFrame* its_frame, float rad
 }
 
 template <class Traits>
-PT_HD Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
+PT_HD Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit, float time = 0.0f) {
   if constexpr (Traits::geometry != Geometry::spheres_and_quads) {
     const bool is_triangle =
         Traits::geometry == Geometry::triangles || hit.primitive >= scene.primitives.count();
-    if (is_triangle) return triangle_surface<Traits>(scene, ray, hit);
+    if (is_triangle) return triangle_surface<Traits>(scene, ray, hit, time);
   }
   const SurfacePoint point = surface_point(scene.primitives, ray, hit);
   const std::uint32_t material = scene.material_of[hit.primitive];

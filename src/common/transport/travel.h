@@ -76,7 +76,8 @@ PT_HD bool travel(const Scene& scene, const Ray& ray, std::uint32_t path_key,
 template <class Traits>
 PT_HD Hit next_hit(const Scene& scene, const Ray& ray, std::uint32_t path_key, PathState& path,
                    FreeFlight flight = {}) {
-  Hit hit = intersect_closest<Traits>(scene, ray, next_ray_key(scene, path_key, path.rays));
+  Hit hit =
+      intersect_closest<Traits>(scene, ray, next_ray_key(scene, path_key, path.rays), path.time);
   if constexpr (Traits::has_media) {
     travel<Traits::has_sparse>(scene, ray, path_key, to_the_end, path, flight, hit);
   }
@@ -102,7 +103,7 @@ PT_HD_IN_KERNEL Scattering medium_scattering(const Scene& scene, const Ray& ray,
   path.receiver = {};
   IncidentLight incident;
   if (settings.nee) {
-    incident = sample_light<Traits>(scene, point, path.receiver, policy.light());
+    incident = sample_light<Traits>(scene, point, path.receiver, policy.light(), path.time);
   }
   const Vec4 scatter = policy.scatter();
   BsdfValue value;

@@ -151,7 +151,7 @@ void check_geometry(std::span<const Mesh> meshes, std::span<const Instance> inst
 
 TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
                                      std::span<const Instance> instances,
-                                     const TreeOptions& options) {
+                                     const TreeOptions& options, const MotionTracks& motion) {
   const auto begin = std::chrono::steady_clock::now();
   TreeOptions chosen = options;
   if (chosen.accel == AccelKind::automatic) chosen.accel = AccelKind::cwbvh;
@@ -164,7 +164,7 @@ TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
     if (triangles.count() > 0) builders.insert(add_group(tree, triangles, group, chosen));
   }
   if (!instances.empty()) {
-    add_instance_tree(tree, instances, chosen.accel);
+    add_instance_tree(tree, instances, chosen.accel, motion);
   } else if (!tree.groups.empty()) {
     tree.root = tree.groups.front().root;
   }

@@ -8,6 +8,7 @@
 #include "common/accel/build/binary/build_binary.h"
 #include "common/accel/build/triangle_tree_data.h"
 #include "common/geometry/mesh.h"
+#include "common/geometry/motion.h"
 #include "common/options/options.h"
 
 namespace pt {
@@ -35,10 +36,11 @@ void check_geometry(std::span<const Mesh> meshes, std::span<const Instance> inst
 /// ("sah-reinsert"); or, where overlap_share() promises something and rays are found to cost less
 /// (try_splits.h), the one by sbvh. The time of each builder grows with the triangles' number times
 /// its logarithm at most, wherever they lie.
+/// Instances that move are within boxes of their whole motion.
 /// Throws Error as check_geometry, and for builders that are not the CPU's.
 TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
                                      std::span<const Instance> instances,
-                                     const TreeOptions& options);
+                                     const TreeOptions& options, const MotionTracks& motion = {});
 
 /// Whether trees are built on the CUDA device.
 inline bool is_device_builder(TreeBuilder builder) {

@@ -53,9 +53,27 @@ Bounds world_bounds(const Bounds& box, const Affine& to_object) {
   return {Vec3(low - margin), Vec3(high + margin)};
 }
 
-InstanceRecord make_record(const GroupTree& group, const Affine& to_object, std::size_t index) {
+/// The box of what lies in `box` in object space while the shutter is open.
+Bounds moving_bounds(const Bounds& box, const MotionTracks& motion, const MotionTrack& track) {
+  Bounds world;
+  const double deviation = sample_poses(motion.segments, track, [&](const Affine& to_world) {
+    world.grow(world_bounds(box, inverse(to_world)));
+  });
+  const glm::dvec3 low(box.min), high(box.max);
+  const double farthest = glm::length(glm::max(glm::abs(low), glm::abs(high)));
+  // Poses between them are rounded, too: a few units of all that is added to a point.
+  const float size = std::max(max_abs(world.min), max_abs(world.max));
+  const float margin = static_cast<float>(1.001 * deviation * farthest) + 32.0f * half_ulp * size;
+  return {world.min - Vec3(margin), world.max + Vec3(margin)};
+}
+
+InstanceRecord make_record(const GroupTree& group, const Affine& to_object, std::size_t index,
+                           const MotionTracks& motion) {
+  const Bounds bounds = motion.moves(index)
+                            ? moving_bounds(group.bounds, motion, motion.instances[index])
+                            : world_bounds(group.bounds, to_object);
   return {to_object,        group.root,       static_cast<std::uint32_t>(index),
-          group.first_slot, group.slot_count, world_bounds(group.bounds, to_object)};
+          group.first_slot, group.slot_count, bounds};
 }
 
 const GroupTree* find_group(std::span<const GroupTree> groups, std::uint32_t index) {
@@ -66,10 +84,11 @@ const GroupTree* find_group(std::span<const GroupTree> groups, std::uint32_t ind
 }
 
 std::vector<InstanceRecord> place_instances(std::span<const GroupTree> groups,
-                                            std::span<const Instance> instances) {
+                                            std::span<const Instance> instances,
+                                            const MotionTracks& motion) {
   std::vector<InstanceRecord> records;
   const auto add = [&](const GroupTree* group, const Affine& to_object, std::size_t index) {
-    if (group != nullptr) records.push_back(make_record(*group, to_object, index));
+    if (group != nullptr) records.push_back(make_record(*group, to_object, index, motion));
   };
   for (std::size_t i = 0; i < instances.size(); ++i) {
     add(find_group(groups, instances[i].group), inverse(instances[i].to_world), i);
@@ -105,8 +124,8 @@ std::vector<std::uint32_t> groups_in_use(std::span<const Instance> instances) {
 
 InstanceTree build_instance_tree(std::span<const GroupTree> groups,
                                  std::span<const Instance> instances, AccelKind accel,
-                                 std::uint32_t first_node) {
-  std::vector<InstanceRecord> records = place_instances(groups, instances);
+                                 std::uint32_t first_node, const MotionTracks& motion) {
+  std::vector<InstanceRecord> records = place_instances(groups, instances, motion);
   InstanceTree tree;
   if (records.empty() || !has_nodes(accel)) {
     tree.instances = std::move(records);
@@ -121,12 +140,13 @@ InstanceTree build_instance_tree(std::span<const GroupTree> groups,
   return tree;
 }
 
-void add_instance_tree(TriangleTreeData& tree, std::span<const Instance> instances,
-                       AccelKind accel) {
+void add_instance_tree(TriangleTreeData& tree, std::span<const Instance> instances, AccelKind accel,
+                       const MotionTracks& motion) {
   tree.first_top_node = 0;
   tree.for_each_nodes(
       [&](const auto& nodes) { tree.first_top_node += static_cast<std::uint32_t>(nodes.size()); });
-  InstanceTree top = build_instance_tree(tree.groups, instances, accel, tree.first_top_node);
+  InstanceTree top =
+      build_instance_tree(tree.groups, instances, accel, tree.first_top_node, motion);
   tree.for_each_nodes(top, [&](auto& all, const auto& nodes) {
     all.insert(all.end(), nodes.begin(), nodes.end());
     if (!nodes.empty()) tree.root = tree.first_top_node;

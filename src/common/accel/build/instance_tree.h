@@ -6,6 +6,7 @@
 
 #include "common/accel/build/triangle_tree_data.h"
 #include "common/geometry/mesh.h"
+#include "common/geometry/motion.h"
 #include "common/options/options.h"
 
 namespace pt {
@@ -22,15 +23,15 @@ struct InstanceTree : TreeNodes<NodesVector> {  ///< the root comes first
 };
 
 /// Over the instances of `groups`, which ascend, and group 0 itself if it is among them. Its nodes
-/// are numbered from `first_node`.
+/// are numbered from `first_node`. Boxes of instances that move are those of their whole motion.
 InstanceTree build_instance_tree(std::span<const GroupTree> groups,
                                  std::span<const Instance> instances, AccelKind accel,
-                                 std::uint32_t first_node);
+                                 std::uint32_t first_node, const MotionTracks& motion = {});
 
 /// Makes TriangleTreeData::instances of those whose groups are in tree.groups and of group 0 if it
 /// is there, and appends the tree over them to the nodes.
-void add_instance_tree(TriangleTreeData& tree, std::span<const Instance> instances,
-                       AccelKind accel);
+void add_instance_tree(TriangleTreeData& tree, std::span<const Instance> instances, AccelKind accel,
+                       const MotionTracks& motion = {});
 
 /// Builds the upper level again over instances of the same groups, whose transforms or groups'
 /// boxes have changed. A tree without one stays as it is. Throws Error as check_instances().

@@ -58,6 +58,7 @@ Scene seeded_view(const SceneData& scene, const ExecutionPlan& plan) {
   Scene view = host_view(scene, plan.width, plan.height);
   view.triangles.accel = plan.traversal;
   view.mask_seed = mask_seed(plan.seed);
+  view.shutter_times = {plan.sampler, static_cast<std::uint32_t>(plan.spp)};
   return view;
 }
 

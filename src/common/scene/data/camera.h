@@ -3,6 +3,7 @@
 #pragma once
 
 #include "common/geometry/ray.h"
+#include "common/math/transform.h"
 #include "common/sampling/warp.h"
 
 namespace pt {
@@ -113,6 +114,16 @@ PT_HD Camera make_camera(const CameraParameters& parameters, int width, int heig
                      shift.y * static_cast<float>(height) * step_y;
   }
   camera.is_limited = is_limited(parameters);
+  return camera;
+}
+
+/// The camera where `pose` brings it.
+PT_HD Camera moved(Camera camera, const Affine& pose) {
+  camera.origin = pose.point(camera.origin);
+  for (Vec3* vector : {&camera.corner, &camera.step_x, &camera.step_y, &camera.lens_x,
+                       &camera.lens_y, &camera.forward})
+    *vector = pose.vector(*vector);
+  camera.forward = normalize(camera.forward);
   return camera;
 }
 

@@ -4,6 +4,7 @@
 #include "common/accel/triangle_tree.h"
 #include "common/choices/choices.h"
 #include "common/geometry/mesh.h"
+#include "common/geometry/motion.h"
 #include "common/geometry/primitives.h"
 #include "common/geometry/sphere.h"
 #include "common/light/distant_lights.h"
@@ -15,6 +16,12 @@
 #include "common/scene/data/camera.h"
 
 namespace pt {
+
+/// How a path's time in the shutter's interval is chosen (shutter_time.h).
+struct ShutterTimes {
+  SamplerKind sampler = SamplerKind::independent;
+  std::uint32_t samples = 1;  ///< per pixel, for strata
+};
 
 struct Scene {
   Camera camera;
@@ -48,7 +55,9 @@ struct Scene {
   std::uint32_t camera_medium_id = no_medium;  ///< see Media
   const Texture* textures = nullptr;
   const std::byte* texels = nullptr;
-  PT_LANE_COUNTER;  ///< of all that is traced in it; set on CUDA
+  const Motion* motion = nullptr;  ///< on the CPU, of a scene that moves
+  ShutterTimes shutter_times;      ///< likewise
+  PT_LANE_COUNTER;                 ///< of all that is traced in it; set on CUDA
 
   bool has_only_triangles() const {
     return primitives.count() == 0 && triangles.instance_count == 0;
@@ -63,7 +72,8 @@ struct Scene {
 /// SceneTraits as a type, with the integrator. (A value as template argument, new in C++20, is
 /// refused by nvcc's host pass.)
 template <Accel accel_value, Geometry geometry_value, Lighting lighting_value,
-          bool has_masks_value = false, bool has_media_value = false, bool has_sparse_value = false>
+          bool has_masks_value = false, bool has_media_value = false, bool has_sparse_value = false,
+          bool has_motion_value = false>
 struct Traits {
   static constexpr Accel accel = accel_value;
   static constexpr Geometry geometry = geometry_value;
@@ -71,19 +81,21 @@ struct Traits {
   static constexpr bool has_masks = has_masks_value;    ///< triangles that are there in part
   static constexpr bool has_media = has_media_value;    ///< between surfaces; with has_masks alone
   static constexpr bool has_sparse = has_sparse_value;  ///< see sample_grid(); with has_media alone
+  static constexpr bool has_motion = has_motion_value;  ///< paths have a time; alone
   static constexpr bool has_lights = lighting != Lighting::sky;
   static constexpr bool has_instances = geometry == Geometry::mixed;
   /// The BSDFs that a kernel shades.
   using BsdfList = std::conditional_t<lighting == Lighting::full, Bsdfs, PaperBsdfs>;
   static constexpr SceneTraits value() {
-    return {accel, geometry, lighting, has_masks, has_media, has_sparse};
+    return {accel, geometry, lighting, has_masks, has_media, has_sparse, has_motion};
   }
 };
 
 /// What shading depends on: scenes that differ in their structure, in masks or in how grids are
 /// stored share its kernels.
 template <class T>
-using ShadingTraits = Traits<Accel::brute, T::geometry, T::lighting, false, T::has_media>;
+using ShadingTraits =
+    Traits<Accel::brute, T::geometry, T::lighting, false, T::has_media, false, T::has_motion>;
 
 /// The same at collisions in media, where grids are looked up.
 template <class T>

@@ -103,8 +103,13 @@ Bounds scene_bounds(const SceneData& scene) {
     for (const Vec3& p : mesh.positions) groups[mesh.group].grow(p);
   }
   Bounds all = groups[0];
-  for (const Instance& instance : scene.instances) {
-    all.grow(transformed(groups[instance.group], instance.to_world));
+  const MotionTracks& motion = scene.motion.tracks();
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Bounds& group = groups[scene.instances[i].group];
+    all.grow(transformed(group, scene.instances[i].to_world));
+    if (!motion.moves(i)) continue;
+    sample_poses(motion.segments, motion.instances[i],
+                 [&](const Affine& to_world) { all.grow(transformed(group, to_world)); });
   }
   for (const Sphere& s : scene.spheres) all.grow(sphere_bounds(s));
   for (const Quad& q : scene.quads) all.grow(quad_bounds(q));

@@ -17,6 +17,7 @@
 #include "common/options/options.h"
 #include "common/plan/render_properties.h"
 #include "common/scene/data/material_description.h"
+#include "common/scene/data/motion_data.h"
 #include "common/scene/data/scene.h"
 
 namespace pt {
@@ -95,6 +96,7 @@ struct SceneData {
   std::vector<Quad> quads;
   std::vector<Mesh> meshes;         ///< those of group 0 in world space
   std::vector<Instance> instances;  ///< of the other groups
+  MotionData motion;
   std::vector<MaterialDescription> materials;
   std::vector<Medium> media;
   std::vector<VolumeGrid> grids;            ///< of media; add_grid() makes them
@@ -146,7 +148,7 @@ struct SceneData {
 };
 
 /// The bounds of everything in world space. Those of instances may be too large: they are the
-/// transformed boxes of their groups.
+/// transformed boxes of their groups. Of those that move: at some of their poses.
 Bounds scene_bounds(const SceneData& scene);
 
 /// A camera that sees all of the scene from the front, right and above (+z, +x and +y) in an image

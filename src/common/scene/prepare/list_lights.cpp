@@ -65,8 +65,14 @@ class Lister {
 
   LightListData list() {
     list_area_lights();
-    for (const Instance& instance : scene_.instances) add_group(instance.group, &instance.to_world);
-    add_group(0, nullptr);
+    const std::map<std::size_t, const Keys*> motions = list_motions();
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+      const Instance& instance = scene_.instances[i];
+      const auto motion = motions.find(i);
+      add_group(instance.group, &instance.to_world,
+                motion == motions.end() ? nullptr : motion->second);
+    }
+    add_group(0, nullptr, nullptr);
     for (std::size_t i = 0; i < scene_.spheres.size(); ++i) add_sphere(i);
     for (const DeltaLight& light : scene_.delta_lights) {
       if (has_position(light.kind)) add_delta(light);
@@ -88,6 +94,14 @@ class Lister {
   }
 
  private:
+  using Keys = std::vector<TransformKey>;
+
+  std::map<std::size_t, const Keys*> list_motions() const {
+    std::map<std::size_t, const Keys*> motions;
+    for (const auto& moving : scene_.motion.instances) motions[moving.instance] = &moving.keys;
+    return motions;
+  }
+
   /// The table of the lights from `first` on.
   void make_table(std::size_t first) {
     std::vector<float> weights;
@@ -156,13 +170,28 @@ class Lister {
     }
   }
 
-  void add_group(std::uint32_t group, const Affine* to_world) {
+  /// `keys`: of an instance that moves. Its lights are listed in its own space.
+  void add_group(std::uint32_t group, const Affine* to_world, const Keys* keys) {
     data_.first.push_back(static_cast<std::uint32_t>(data_.lights.size()));
     for (const EmissiveMesh& emissive : emissive_meshes_[group])
-      add_placed(*emissive.mesh, emissive.first_triangle, to_world);
+      add_placed(*emissive.mesh, emissive.first_triangle, to_world, keys);
   }
 
-  void add_placed(const Mesh& mesh, std::uint32_t first_triangle, const Affine* to_world) {
+  /// The largest of all keys, twice: for the poses between them.
+  static LightError moving_error(const Keys& keys, const Vec3 v[3]) {
+    LightError most{};
+    for (const TransformKey& key : keys) {
+      const LightError error =
+          PlacementErrors(&key.to_world)
+              .of_triangle(v, key.to_world.vector(v[1] - v[0]), key.to_world.vector(v[2] - v[0]));
+      most.absolute = std::max(most.absolute, 2.0f * error.absolute);
+      most.relative = std::max(most.relative, 2.0f * error.relative);
+    }
+    return most;
+  }
+
+  void add_placed(const Mesh& mesh, std::uint32_t first_triangle, const Affine* to_world,
+                  const Keys* keys) {
     const Emission& emission = scene_.materials[mesh.material].emission;
     const PlacementErrors errors(to_world);
     if (data_.lights.size() + mesh.triangles.size() > lights_max) {
@@ -182,10 +211,15 @@ class Lister {
       const bool turned = to_world != nullptr && to_world->determinant() < 0.0f;
       light.kind = turned ? LightKind::flipped_triangle : LightKind::triangle;
       light.edge1 = turned ? edge2 : edge1, light.edge2 = turned ? edge1 : edge2;
-      const PackedLightError error = pack_light_error(errors.of_triangle(v, edge1, edge2));
+      const PackedLightError error = pack_light_error(
+          keys != nullptr ? moving_error(*keys, v) : errors.of_triangle(v, edge1, edge2));
       light.relative_error = error.relative, light.absolute_error = error.absolute;
       light.weight = emitter_weight(emission.radiance, 0.5f * glm::length(glm::cross(edge1, edge2)),
                                     emission.texture_mean);
+      if (keys != nullptr) {
+        light.vertex = v[0];
+        light.edge1 = v[turned ? 2 : 1] - v[0], light.edge2 = v[turned ? 1 : 2] - v[0];
+      }
       // Emission is scaled by opacity: such emitters are hit by BSDF sampling alone.
       if (!scene_.materials[mesh.material].opacity.is_opaque()) light.weight = 0.0f;
       light.triangle =

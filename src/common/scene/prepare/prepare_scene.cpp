@@ -26,13 +26,22 @@ bool needs_triangles(const MaterialDescription& material) {
 }  // namespace
 
 bool has_primitives_only(const SceneData& scene) {
-  return !is_limited(scene.camera) && !scene.camera.orthographic && scene.meshes.empty() &&
-         scene.delta_lights.empty() && scene.environment.width == 0 &&
+  return !scene.motion.moves() && !is_limited(scene.camera) && !scene.camera.orthographic &&
+         scene.meshes.empty() && scene.delta_lights.empty() && scene.environment.width == 0 &&
          scene.sun.one_minus_cos == 0.0f && scene.textures.empty() && scene.sphere_frames.empty() &&
          scene.media.empty() && std::ranges::none_of(scene.materials, needs_triangles);
 }
 
 namespace {
+
+bool has_moving_emitters(const SceneData& scene) {
+  return std::ranges::any_of(scene.motion.instances, [&](const auto& moving) {
+    return std::ranges::any_of(scene.meshes, [&](const Mesh& mesh) {
+      return mesh.group == scene.instances[moving.instance].group &&
+             !is_black(scene.materials[mesh.material].emission.radiance);
+    });
+  });
+}
 
 /// What edits of materials and lights may change.
 void describe_shading(const SceneData& scene, SceneProperties& properties) {
@@ -55,6 +64,8 @@ SceneProperties properties_of(const SceneData& scene) {
   properties.instances = scene.instances.size();
   if (!scene.instances.empty()) properties.tree_groups = groups_in_use(scene.instances).size();
   properties.is_primitive_only = has_primitives_only(scene);
+  properties.has_motion = scene.motion.moves();
+  properties.has_moving_emitters = has_moving_emitters(scene);
   properties.has_masks =
       is_limited(scene.camera) || std::ranges::any_of(scene.materials, is_masked);
   properties.has_media = needs_media(scene);
@@ -75,18 +86,33 @@ void prepare_primitives_only(SceneData& scene, Accel accel) {
                   scene.lights.empty() ? Lighting::sky : Lighting::emitters};
 }
 
+/// How much farther from where the camera is described its motion takes its rays.
+float motion_extent(const SceneData& scene) {
+  const std::vector<TransformKey>& keys = scene.motion.camera;
+  if (keys.empty()) return 0.0f;
+  const Vec3 first = keys.front().to_world.translation();
+  float most = 0.0f;
+  for (const TransformKey& key : keys)
+    most = std::max(most, glm::length(key.to_world.translation() - first));
+  return most + 2.0f * glm::length(scene.camera.look_from - first);
+}
+
 void set_camera(SceneData& scene, const CameraParameters& camera, const Options& options) {
   scene.camera = camera;
+  const CameraOverrides& own = options.camera;
+  if (own.look_from || own.look_at || own.up) scene.motion.camera.clear();  // it stands there
   override_camera(scene.camera, options.camera);
   check_camera(scene.camera);
-  drop_idle_far_plane(scene);
-  scene.camera_extent = camera_extent(scene.camera, options.width, options.height);
+  if (scene.motion.camera.empty()) drop_idle_far_plane(scene);
+  scene.camera_extent =
+      camera_extent(scene.camera, options.width, options.height) + motion_extent(scene);
 }
 
 }  // namespace
 
 bool move_camera(SceneData& scene, const CameraParameters& camera, const Options& options) {
   if (scene.primitive_count() > 0) return false;  // their bounds and scans depend on its place
+  if (!scene.motion.camera.empty()) return false;
   const bool was_orthographic = scene.camera.orthographic, was_limited = is_limited(scene.camera);
   set_camera(scene, camera, options);
   return scene.camera.orthographic == was_orthographic && is_limited(scene.camera) == was_limited;
@@ -97,6 +123,7 @@ void resolve_scene(SceneData& scene, const Options& options) {
     throw Error(fmt::format("scene '{}' is empty: expected at least one primitive", scene.name));
   }
   set_camera(scene, scene.camera, options);
+  prepare_motion(scene);
   prepare_materials(scene, options.multiple_scattering, options.integrator != IntegratorKind::mlt);
   prepare_media(scene);
   prepare_filter(scene, filter_of(options, scene));
@@ -152,7 +179,8 @@ bool resolve_shading(SceneData& scene, const SceneData& source, const Options& o
 
 bool resolve_changes(SceneData& scene, const SceneData& source, const SceneChanges& changes,
                      const Options& options) {
-  if (changes.move_surfaces() && (scene.primitive_count() > 0 || !scene.media.empty()))
+  if (changes.move_surfaces() &&
+      (scene.primitive_count() > 0 || !scene.media.empty() || scene.motion.moves()))
     return false;
   if (changes.instances) scene.instances = source.instances;
   for (std::size_t i = 0; i < source.meshes.size(); ++i) {
@@ -203,6 +231,7 @@ Scene host_view(const SceneData& scene, int width, int height) {
   view.media.overlap = scene.media_overlap;
   view.camera_medium_id = camera_medium_id(scene);
   view.light_point_count = count(scene.light_points);
+  if (scene.motion.prepared) view.motion = &scene.motion.prepared->view;
   for_each_array(scene, view,
                  [](auto*& pointer, const auto& values, const char*) { pointer = values.data(); });
   return view;

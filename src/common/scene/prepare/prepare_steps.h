@@ -31,6 +31,12 @@ void prepare_media(SceneData& scene);
 /// its bits. After convert_quads() and prepare_media().
 void separate_boundaries(SceneData& scene);
 
+/// Decomposes the keys of all that moves. Throws Error, which names it, for keys that are none.
+void prepare_motion(SceneData& scene);
+
+/// Tells which lights move, after they have been listed.
+void prepare_moving_lights(SceneData& scene);
+
 /// As Scene has it. After prepare_media().
 std::uint32_t camera_medium_id(const SceneData& scene);
 

@@ -80,20 +80,26 @@ void prepare_triangles(SceneData& scene, const ExecutionPlan& plan) {
   prepare_primitives(scene, !scene.spheres.empty(), bounds);
   scene.lights.clear();  // they are in light_list
   const bool masked = !scene.opacities.empty();
-  const bool mixed = masked || !scene.instances.empty() || !scene.spheres.empty() ||
-                     accel == Accel::brute || accel == Accel::embree;
-  scene.traits = {accel, mixed ? Geometry::mixed : Geometry::triangles, Lighting::full, masked,
-                  needs_media(scene)};
+  const bool mixed = scene.motion.moves() || masked || !scene.instances.empty() ||
+                     !scene.spheres.empty() || accel == Accel::brute || accel == Accel::embree;
+  scene.traits = {accel,
+                  mixed ? Geometry::mixed : Geometry::triangles,
+                  Lighting::full,
+                  masked,
+                  needs_media(scene),
+                  false,
+                  scene.motion.moves()};
   const TreeOptions tree = tree_options(accel, plan.builder);
   if (is_device_builder(plan.builder)) {
     check_geometry(scene.meshes, scene.instances);
   } else {
-    scene.tree = build_triangle_tree(scene.meshes, scene.instances, tree);
+    scene.tree = build_triangle_tree(scene.meshes, scene.instances, tree, scene.motion.tracks());
     if (accel == Accel::embree) scene.embree = std::make_shared<const EmbreeTree>(scene.tree);
   }
   scene.corners = list_corners(scene.meshes);
   if (!scene.instances.empty()) scene.to_world = instance_transforms(scene);
   scene.light_list = list_lights(scene, bounds, plan.light_selection);
+  prepare_moving_lights(scene);
   if (scene.environment.width > 0) {
     scene.environment_map = make_environment(scene.environment.width, scene.environment.height,
                                              scene.environment.pixels, scene.environment.to_world);

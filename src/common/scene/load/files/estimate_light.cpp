@@ -101,6 +101,7 @@ using GlimpseKinds = TypeList<Traits<Accel::bvh2, Geometry::triangles, Lighting:
 }  // namespace
 
 LightEstimate::LightEstimate(const SceneData& scene) : scene_(scene) {
+  scene_.motion = {};  // where everything begins
   prepare_scene(scene_, options_of_estimate());
 }
 

@@ -110,13 +110,55 @@ bool turns(const ShapeEntity& entity, bool is_quadric, bool emits) {
   return entity.reverse != (is_quadric && mirrors && !emits);
 }
 
-/// A mesh in the space of the entity. Its material's light is complete then.
+/// The group of the shapes that move together, from place to place.
+class MovingGroups {
+ public:
+  explicit MovingGroups(Context& context) : context_(context) {
+    for (const ShapeEntity& shape : context.description.shapes)
+      next_ = std::max(next_, shape.group);
+    for (const auto& [name, group] : context.description.groups) next_ = std::max(next_, group);
+  }
+
+  std::uint32_t group_of(const Entity& entity) {
+    std::vector<float> numbers;
+    for (const Affine* map : {&entity.to_world, &*entity.end_to_world})
+      for (const Vec4& row : map->row) numbers.insert(numbers.end(), {row.x, row.y, row.z, row.w});
+    const auto [found, is_new] = groups_.try_emplace(std::move(numbers), next_ + 1);
+    if (is_new) {
+      ++next_;
+      add_moving_instance(context_, next_, entity.to_world, *entity.end_to_world);
+    }
+    return found->second;
+  }
+
+  static void add_moving_instance(Context& context, std::uint32_t group, const Affine& begin,
+                                  const Affine& end) {
+    SceneData& scene = context.scene;
+    const Description& d = context.description;
+    scene.motion.instances.push_back(
+        {static_cast<std::uint32_t>(scene.instances.size()), {{d.begin_s, begin}, {d.end_s, end}}});
+    scene.instances.push_back({group, begin});
+  }
+
+ private:
+  Context& context_;
+  std::uint32_t next_ = 0;
+  std::map<std::vector<float>, std::uint32_t> groups_;  ///< by both transformations
+};
+
+/// A mesh in the space of the entity. Its material's light is complete then. One that moves stays
+/// there, and an instance moves it.
 void place_mesh(Context& context, const ShapeEntity& entity, const ShapeMaterial& shape,
-                bool is_quadric, Mesh mesh) {
-  const Affine& to_world = entity.shape.to_world;
+                bool is_quadric, Mesh mesh, MovingGroups& moving) {
+  const bool moves = entity.shape.end_to_world.has_value();
+  const Affine to_world = moves ? Affine() : entity.shape.to_world;
   if (mesh.uvs.empty() && shape.textured && shape.mapping.is_uv()) add_default_uvs(mesh);
   transform_mesh(mesh, to_world);
-  if (shape.textured) map_vertices(mesh, shape.mapping);
+  if (shape.textured) {
+    TextureMapping mapping = shape.mapping;
+    if (moves) mapping.to_texture = mapping.to_texture * entity.shape.to_world;
+    map_vertices(mesh, mapping);
+  }
   for (const Vec3& p : mesh.positions) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
       fail(entity.shape.parameters.place(), "a shape that reaches farther than numbers do");
@@ -131,9 +173,17 @@ void place_mesh(Context& context, const ShapeEntity& entity, const ShapeMaterial
   if (!shape.textured) mesh.uvs.clear();
   MaterialDescription material = shape.material;
   const std::size_t parts = is_quadric ? 1 : mesh.triangles.size();
-  set_power(context, entity, shape, area_of(mesh), parts, material);
+  double area = 0;
+  if (moves && shape.power > 0.0f) {
+    Mesh placed = mesh;
+    transform_mesh(placed, entity.shape.to_world);
+    area = area_of(placed);
+  } else {
+    area = area_of(mesh);
+  }
+  set_power(context, entity, shape, area, parts, material);
   mesh.material = context.add_material(material);
-  mesh.group = entity.group;
+  mesh.group = moves ? moving.group_of(entity.shape) : entity.group;
   if (shape.two_sided && shape.emits) {
     Mesh back = back_of(mesh);
     std::swap(material.media.inside, material.media.outside);
@@ -153,8 +203,9 @@ bool place_sphere(Context& context, const ShapeEntity& entity, const ShapeMateri
   const Affine& to_world = entity.shape.to_world;
   const std::optional<float> factor = uniform_scale(to_world);
   const bool inside_out = turns(entity, true, shape.emits);
-  if (!factor || entity.group != 0 || (shape.textured && !shape.mapping.is_uv()) ||
-      !shape.material.opacity.is_opaque() || shape.material.emission.texture != no_texture ||
+  if (!factor || entity.group != 0 || entity.shape.end_to_world ||
+      (shape.textured && !shape.mapping.is_uv()) || !shape.material.opacity.is_opaque() ||
+      shape.material.emission.texture != no_texture ||
       (shape.emits && (inside_out || shape.two_sided))) {
     return false;
   }
@@ -189,7 +240,8 @@ const std::map<std::string_view, Kind>& kinds() {
   return table;
 }
 
-void add_shape(Context& context, const ShapeEntity& entity, ShapeMaterials& materials) {
+void add_shape(Context& context, const ShapeEntity& entity, ShapeMaterials& materials,
+               MovingGroups& moving) {
   const std::string& type = entity.shape.type;
   const Parameters& parameters = entity.shape.parameters;
   const auto kind = kinds().find(type);
@@ -206,7 +258,9 @@ void add_shape(Context& context, const ShapeEntity& entity, ShapeMaterials& mate
         "invisible", parameters.place(),
         "a shape that light passes (material 'interface', or an alpha of 0) is left out");
   }
-  if (!is_invertible(entity.shape.to_world)) {
+  const Entity& placed = entity.shape;
+  if (!is_invertible(placed.to_world) ||
+      (placed.end_to_world && !is_invertible(*placed.end_to_world))) {
     fail(parameters.place(), "{}: its transformation has no inverse", parameters.what());
   }
   const std::optional<float> radius =
@@ -217,7 +271,7 @@ void add_shape(Context& context, const ShapeEntity& entity, ShapeMaterials& mate
       context.reporter.warn_once("empty mesh", parameters.place(),
                                  "a mesh without triangles is left out");
     } else {
-      place_mesh(context, entity, material, kind->second.is_quadric, std::move(mesh));
+      place_mesh(context, entity, material, kind->second.is_quadric, std::move(mesh), moving);
     }
   }
   parameters.report_unused(context.reporter);
@@ -231,20 +285,24 @@ void add_instance(Context& context, const InstanceEntity& instance,
     fail(instance.place, "there is no object '{}'; expected one that ObjectBegin defines",
          instance.name);
   }
-  if (!is_invertible(instance.to_world)) {
+  const std::optional<Affine>& end = instance.end_to_world;
+  if (!is_invertible(instance.to_world) || (end && !is_invertible(*end))) {
     fail(instance.place, "ObjectInstance: its transformation has no inverse");
   }
   const std::uint32_t number = instance.group != 0 ? instance.group : group->second;
-  if (groups.contains(number)) context.scene.instances.push_back({number, instance.to_world});
+  if (!groups.contains(number)) return;
+  if (end) return MovingGroups::add_moving_instance(context, number, instance.to_world, *end);
+  context.scene.instances.push_back({number, instance.to_world});
 }
 
 }  // namespace
 
 void add_shapes(Context& context) {
   ShapeMaterials materials(context);
+  MovingGroups moving(context);
   for (const ShapeEntity& shape : context.description.shapes) {
     context.reporter.attempt(shape.shape.parameters.what(), "is left out",
-                             [&] { add_shape(context, shape, materials); });
+                             [&] { add_shape(context, shape, materials, moving); });
   }
   std::set<std::uint32_t> groups;
   for (const Mesh& mesh : context.scene.meshes) groups.insert(mesh.group);

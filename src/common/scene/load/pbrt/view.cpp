@@ -47,6 +47,10 @@ void place_camera(Context& context, const Entity& entity) {
   look_along_z(map, camera);
   camera.mirrored = map.determinant() > 0.0f;
   if (const auto& look = context.description.camera_look_at) take_written_view(*look, camera);
+  if (entity.end_to_world) {
+    const Description& d = context.description;
+    context.scene.motion.camera = {{d.begin_s, map}, {d.end_s, inverse(*entity.end_to_world)}};
+  }
 }
 
 void read_perspective(Context& context, const Entity& entity) {
@@ -99,6 +103,7 @@ void read_orthographic(Context& context, const Entity& entity) {
 void read_camera(Context& context, const Entity& entity) {
   const Parameters& parameters = entity.parameters;
   context.scene.camera = {};
+  context.scene.motion.camera.clear();
   place_camera(context, entity);
   if (entity.type == "orthographic") {
     read_orthographic(context, entity);
@@ -112,8 +117,9 @@ void read_camera(Context& context, const Entity& entity) {
     }
     read_perspective(context, entity);
   }
-  const float exposure =
-      parameters.number("shutterclose", 1.0f) - parameters.number("shutteropen", 0.0f);
+  Shutter& shutter = context.scene.motion.shutter;
+  shutter = {parameters.number("shutteropen", 0.0f), parameters.number("shutterclose", 1.0f)};
+  const float exposure = shutter.close - shutter.open;
   if (!(exposure > 0.0f)) fail(parameters.place(), "expected shutterclose after shutteropen");
   if (!context.description.is_earlier) context.imaging_ratio *= exposure;
   parameters.report_unused(context.reporter);
@@ -303,7 +309,8 @@ void read_view(Context& context) {
   const auto read = [&](const char* what, const char* type, const EntityPointer& entity,
                         void (*reader)(Context&, const Entity&)) {
     const Entity plain{entity ? entity->type : type, Parameters(d.place, what, {}),
-                       entity ? entity->to_world : Affine(), ColorSpace::srgb};
+                       entity ? entity->to_world : Affine(), ColorSpace::srgb,
+                       entity ? entity->end_to_world : std::nullopt};
     const float ratio = context.imaging_ratio;
     const bool is_read = context.reporter.attempt(
         what, "is as if it had no parameters", [&] { reader(context, entity ? *entity : plain); });

@@ -20,12 +20,17 @@ inline bool is_invertible(const Affine& map) {
   return std::isfinite(determinant) && determinant != 0.0f;
 }
 
+inline bool equals(const Affine& a, const Affine& b) {
+  return a.row[0] == b.row[0] && a.row[1] == b.row[1] && a.row[2] == b.row[2];
+}
+
 /// A directive with a type and parameters: a material, a texture, a light, ...
 struct Entity {
   std::string type;
   Parameters parameters;
   Affine to_world;                      ///< the current transformation
   ColorSpace space = ColorSpace::srgb;  ///< the current one
+  std::optional<Affine> end_to_world;   ///< where it ends, if it moves
 };
 using EntityPointer = std::shared_ptr<const Entity>;
 
@@ -54,6 +59,7 @@ struct InstanceEntity {
   FileLocation place;
   Affine to_world;
   std::uint32_t group = 0;  ///< 0: it may be defined later
+  std::optional<Affine> end_to_world;
 };
 
 struct Description {
@@ -64,6 +70,7 @@ struct Description {
   EntityPointer camera, film, sampler, integrator, filter;
   std::optional<LookAt> camera_look_at;  ///< the last LookAt before it
   std::string camera_medium;             ///< by name; empty: a vacuum
+  float begin_s = 0.0f, end_s = 1.0f;    ///< of all motions: TransformTimes
   std::vector<EntityPointer> lights;
   // By name:
   std::map<std::string, EntityPointer> materials, media, float_textures, spectrum_textures;

@@ -114,7 +114,12 @@ Entity Interpreter::read_entity(const Directive& directive, std::string_view tar
   return {type,
           Parameters(directive.place, fmt::format("{} '{}'", directive.name, type), std::move(own),
                      inherited == state_.attributes.end() ? nullptr : inherited->second),
-          state_.to_world, state_.space};
+          state_.to_world.begin, state_.space, end_of_motion()};
+}
+
+std::optional<Affine> Interpreter::end_of_motion() const {
+  const auto& [begin, end] = state_.to_world;
+  return equals(begin, end) ? std::nullopt : std::optional(end);
 }
 
 std::filesystem::path Interpreter::find(const std::string& name, const Directive& directive) {

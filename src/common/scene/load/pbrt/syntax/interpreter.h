@@ -8,10 +8,16 @@
 
 namespace pt::pbrt {
 
+/// Current transformations: where a motion begins and where it ends.
+struct Placement {
+  Affine begin, end;
+};
+
 struct GraphicsState {
-  Affine to_world;
-  std::optional<LookAt> look_at;  ///< the last one
-  bool moves_start = true;  ///< transformations apply at the beginning of the shutter's interval
+  Placement to_world;
+  std::optional<LookAt> look_at;  ///< the last one at the beginning
+  // Which of the two ActiveTransform has chosen.
+  bool moves_begin = true, moves_end = true;
   bool reverse = false;
   ColorSpace space = ColorSpace::srgb;
   MaterialReference material;
@@ -73,6 +79,8 @@ class Interpreter {
   /// Reports a directive that is ignored.
   void report_bad(const Directive& directive, const std::string& message);
   std::string name_after(const Directive& directive) const;
+  /// Where what stands here ends, if it moves.
+  std::optional<Affine> end_of_motion() const;
   /// A type in quotes and parameters; those of the attribute `target` too.
   Entity read_entity(const Directive& directive, std::string_view target = {});
   /// The path of a file to include; empty, and reported, where it does not exist.
@@ -81,11 +89,11 @@ class Interpreter {
   Description& description_;
   Reporter& reporter_;
   GraphicsState state_;
-  std::vector<std::pair<GraphicsState, bool>> stack_;  ///< whether by ObjectBegin
-  std::map<std::string, Affine> coordinate_systems_;   ///< to the world
-  std::map<std::string, std::string> newest_;          ///< "material x", "texture x" defined again
-  std::uint32_t group_ = 0;                            ///< of the object that is being defined
-  std::uint32_t groups_ = 0;                           ///< how many there were
+  std::vector<std::pair<GraphicsState, bool>> stack_;    ///< whether by ObjectBegin
+  std::map<std::string, Placement> coordinate_systems_;  ///< to the world
+  std::map<std::string, std::string> newest_;  ///< "material x", "texture x" defined again
+  std::uint32_t group_ = 0;                    ///< of the object that is being defined
+  std::uint32_t groups_ = 0;                   ///< how many there were
   bool in_world_ = false;
   int inclusions_ = 0;
 };

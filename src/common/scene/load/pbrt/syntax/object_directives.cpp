@@ -82,10 +82,10 @@ void Interpreter::refer_to_newest(std::vector<Parameter>& parameters) const {
 void Interpreter::option(const Directive& directive) {
   EntityPointer entity = shared(read_entity(directive));
   if (directive.name == "Camera") {
-    if (!is_invertible(state_.to_world)) {
+    if (!is_invertible(state_.to_world.begin) || !is_invertible(state_.to_world.end)) {
       return report_bad(directive, "Camera: the transformation has no inverse");
     }
-    coordinate_systems_["camera"] = inverse(state_.to_world);
+    coordinate_systems_["camera"] = {inverse(state_.to_world.begin), inverse(state_.to_world.end)};
     description_.camera = entity;
     description_.camera_look_at = state_.look_at;
     description_.camera_medium = state_.media.outside;
@@ -106,8 +106,9 @@ void Interpreter::object(const Directive& directive) {
   const std::string name = name_after(directive);
   if (group_ != 0) return report_bad(directive, "ObjectInstance inside of an object");
   const auto group = description_.groups.find(name);
-  description_.instances.push_back({name, directive.place, state_.to_world,
-                                    group == description_.groups.end() ? 0 : group->second});
+  description_.instances.push_back({name, directive.place, state_.to_world.begin,
+                                    group == description_.groups.end() ? 0 : group->second,
+                                    end_of_motion()});
 }
 
 void Interpreter::material(const Directive& directive) {
@@ -152,6 +153,12 @@ void Interpreter::texture(const Directive& directive) {
 void Interpreter::shape(const Directive& directive) {
   description_.shapes.push_back({read_entity(directive, "shape"), state_.material,
                                  state_.area_light, state_.reverse, state_.media, group_});
+  std::optional<Affine>& end = description_.shapes.back().shape.end_to_world;
+  if (group_ == 0 || !end) return;
+  end.reset();
+  reporter_.warn_once("motion in objects", directive.place,
+                      "shapes that move inside of an object are not supported: they stay where "
+                      "they begin; expected a motion of the ObjectInstance");
 }
 
 void Interpreter::earlier(const Directive& directive) {
@@ -163,6 +170,10 @@ void Interpreter::earlier(const Directive& directive) {
 
 void Interpreter::light(const Directive& directive) {
   description_.lights.push_back(shared(read_entity(directive, "light")));
+  if (description_.lights.back()->end_to_world)
+    reporter_.warn_once("motion of lights", directive.place,
+                        "LightSources that move are not supported: they stay where they begin; "
+                        "expected a shape with AreaLightSource");
 }
 
 void Interpreter::area_light(const Directive& directive) {

@@ -101,14 +101,20 @@ void check_finite(const Affine& map, const FileLocation& place) {
 }  // namespace
 
 void Interpreter::transform(const Directive& directive) {
-  const std::optional<Affine> map = read_map(directive, state_.look_at);
-  if (!state_.moves_start) return;
+  std::optional<LookAt> look = state_.look_at;
+  const std::optional<Affine> map = read_map(directive, look);
+  if (state_.moves_begin) state_.look_at = look;
   const bool replaces = directive.name == "Identity" || directive.name == "Transform";
   reporter_.attempt(directive.name, "is ignored", [&] {
     check_map(map, directive);
-    const Affine moved = replaces ? *map : state_.to_world * *map;
-    check_finite(moved, directive.place);
-    state_.to_world = moved;
+    const auto moved = [&](const Affine& before) {
+      const Affine after = replaces ? *map : before * *map;
+      check_finite(after, directive.place);
+      return after;
+    };
+    const auto& [begin, end] = state_.to_world;
+    state_.to_world = {state_.moves_begin ? moved(begin) : begin,
+                       state_.moves_end ? moved(end) : end};
   });
 }
 
@@ -183,7 +189,7 @@ void Interpreter::world_begin(const Directive& directive) {
   }
   in_world_ = true;
   state_.to_world = {};
-  state_.moves_start = true;
+  state_.moves_begin = state_.moves_end = true;
   coordinate_systems_["world"] = {};
 }
 
@@ -201,7 +207,14 @@ void Interpreter::reverse(const Directive&) { state_.reverse = !state_.reverse; 
 
 void Interpreter::animation(const Directive& directive) {
   if (directive.name == "TransformTimes") {
-    for (int i = 0; i < 2; ++i) directive.tokens.expect_number("a time");
+    const auto begin = static_cast<float>(directive.tokens.expect_number("a time"));
+    const auto end = static_cast<float>(directive.tokens.expect_number("a time"));
+    reporter_.attempt("TransformTimes", "is ignored", [&] {
+      if (!(end > begin))
+        fail(directive.place, "TransformTimes {} {}; expected the end after the beginning", begin,
+             end);
+      description_.begin_s = begin, description_.end_s = end;
+    });
     return;
   }
   const std::string which =
@@ -209,11 +222,7 @@ void Interpreter::animation(const Directive& directive) {
   if (which != "All" && which != "StartTime" && which != "EndTime") {
     fail(directive.place, "ActiveTransform {}; expected All, StartTime or EndTime", which);
   }
-  state_.moves_start = which != "EndTime";
-  if (which != "All") {
-    reporter_.warn_once("motion", directive.place,
-                        "motion is not supported: everything stays where it begins");
-  }
+  state_.moves_begin = which != "EndTime", state_.moves_end = which != "StartTime";
 }
 
 }  // namespace pt::pbrt

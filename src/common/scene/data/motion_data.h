@@ -1,0 +1,54 @@
+// What of a scene moves while the shutter is open.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "common/geometry/motion.h"
+
+namespace pt {
+
+/// A transformation at a time, in seconds.
+struct TransformKey {
+  float time = 0.0f;
+  Affine to_world;
+};
+
+/// When light reaches the film, in seconds; it opens before it closes.
+struct Shutter {
+  float open = 0.0f, close = 1.0f;
+};
+
+/// What kernels read; `view` points to the rest, so it is never copied.
+struct PreparedMotion {
+  MotionTracks tracks;
+  std::vector<std::uint32_t> light_instances;  ///< see Motion
+  Motion view;
+
+  PreparedMotion() = default;
+  PreparedMotion(const PreparedMotion&) = delete;
+  PreparedMotion& operator=(const PreparedMotion&) = delete;
+};
+
+/// Keys are two or more, in the order of time; before the first and after the last one nothing
+/// moves.
+struct MotionData {
+  struct MovingInstance {
+    std::uint32_t instance = 0;
+    std::vector<TransformKey> keys;
+  };
+
+  Shutter shutter;
+  std::vector<TransformKey> camera;  ///< poses of the camera's space, which the first key's pose
+                                     ///< takes to what the scene's camera says; empty: it stands
+  std::vector<MovingInstance> instances;     ///< whose Instance::to_world is then the first key's
+  std::shared_ptr<PreparedMotion> prepared;  ///< of the above, by prepare_motion(); null: it stands
+
+  bool moves() const { return !camera.empty() || !instances.empty(); }
+  const MotionTracks& tracks() const {
+    static const MotionTracks none;
+    return prepared ? prepared->tracks : none;
+  }
+};
+
+}  // namespace pt

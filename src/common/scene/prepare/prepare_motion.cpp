@@ -1,0 +1,167 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+
+#include "common/error/error.h"
+#include "common/scene/data/scene_data.h"
+#include "common/scene/prepare/prepare_steps.h"
+
+namespace pt {
+namespace {
+
+using DMat3 = glm::dmat3;
+using DVec3 = glm::dvec3;
+
+struct Decomposed {
+  DVec3 translation;
+  glm::dquat rotation;
+  DMat3 stretch;  ///< symmetric
+};
+
+DMat3 linear_part(const Affine& a) {
+  DMat3 linear;  // by columns
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) linear[j][i] = double{a.row[i][j]};
+  return linear;
+}
+
+double size_of(const DMat3& m) {
+  double sum = 0;
+  for (int j = 0; j < 3; ++j) sum += glm::dot(m[j], m[j]);
+  return std::sqrt(sum);
+}
+
+/// The orthogonal factor of M, averaged with its inverse transpose until it is its own (Higham
+/// 1986). Of a map that mirrors, the rotation is the opposite of the factor.
+Decomposed decompose(const Affine& a) {
+  const DMat3 linear = linear_part(a);
+  DMat3 factor = linear;
+  for (int i = 0; i < 100; ++i) {
+    const DMat3 next = 0.5 * (factor + glm::transpose(glm::inverse(factor)));
+    const double change = size_of(next - factor);
+    factor = next;
+    if (change < 1e-14 * size_of(factor)) break;
+  }
+  if (glm::determinant(factor) < 0) factor = -factor;
+  const DMat3 stretch = glm::transpose(factor) * linear;
+  return {DVec3(a.translation()), glm::normalize(glm::quat_cast(factor)),
+          0.5 * (stretch + glm::transpose(stretch))};
+}
+
+bool is_finite(const Affine& a) {
+  double sum = 0;
+  for (const Vec4& row : a.row)
+    for (int i = 0; i < 4; ++i) sum += std::abs(double{row[i]});
+  return sum < 1e15;
+}
+
+Vec4 to_vec4(const glm::dquat& q) { return Vec4(glm::dvec4(q.x, q.y, q.z, q.w)); }
+
+MotionSegment make_segment(const Decomposed& from, Decomposed to, double begin, double end) {
+  MotionSegment segment;
+  if (glm::dot(from.rotation, to.rotation) < 0) to.rotation = -to.rotation;  // the shorter way
+  const double cosine = glm::dot(from.rotation, to.rotation);
+  const glm::dquat across = to.rotation - from.rotation * cosine;
+  const double sine = glm::length(across);
+  segment.begin = static_cast<float>(begin), segment.end = static_cast<float>(end);
+  segment.inverse_length = static_cast<float>(1.0 / (end - begin));
+  segment.translation = Vec3(from.translation);
+  segment.translated = Vec3(to.translation - from.translation);
+  segment.rotation = to_vec4(from.rotation);
+  constexpr double still = 1e-9;  // below what single precision can tell
+  if (sine > still) {
+    segment.towards = to_vec4(across * (1.0 / sine));
+    segment.turns = static_cast<float>(std::atan2(sine, cosine) / (2 * double{pi}));
+  }
+  for (int i = 0; i < 3; ++i) {  // symmetric: rows are columns
+    segment.stretch[i] = Vec3(from.stretch[i]);
+    segment.stretched[i] = Vec3(to.stretch[i] - from.stretch[i]);
+  }
+  return segment;
+}
+
+/// Throws Error, which begins with `what`.
+void check_keys(const std::vector<TransformKey>& keys, const std::string& what) {
+  const auto refuse = [&](const std::string& why) {
+    throw Error(fmt::format("{}: {}", what, why));
+  };
+  if (keys.size() < 2) refuse(fmt::format("{} key of a motion; expected two or more", keys.size()));
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const Affine& map = keys[i].to_world;
+    const float determinant = map.determinant();
+    if (!is_finite(map) || !std::isfinite(determinant) || determinant == 0.0f ||
+        !is_finite(inverse(map)))
+      refuse(fmt::format("key {} of its motion; expected a transform that can be inverted", i));
+    if ((determinant < 0.0f) != (keys[0].to_world.determinant() < 0.0f))
+      refuse(fmt::format("key {} of its motion mirrors other than key 0; expected all or none", i));
+    if (!std::isfinite(keys[i].time) || (i > 0 && !(keys[i].time > keys[i - 1].time)))
+      refuse(
+          fmt::format("key {} of its motion at {} s; expected times that ascend", i, keys[i].time));
+  }
+}
+
+MotionTrack add_track(const std::vector<TransformKey>& keys, const Shutter& shutter,
+                      const std::string& what, MotionTracks& tracks) {
+  check_keys(keys, what);
+  const MotionTrack track{static_cast<std::uint32_t>(tracks.segments.size()),
+                          static_cast<std::uint32_t>(keys.size() - 1)};
+  const double open = double{shutter.open}, length = double{shutter.close} - open;
+  Decomposed from = decompose(keys[0].to_world);
+  for (std::size_t i = 1; i < keys.size(); ++i) {
+    const Decomposed to = decompose(keys[i].to_world);
+    tracks.segments.push_back(make_segment(from, to, (double{keys[i - 1].time} - open) / length,
+                                           (double{keys[i].time} - open) / length));
+    from = to;
+  }
+  return track;
+}
+
+}  // namespace
+
+void prepare_motion(SceneData& scene) {
+  MotionData& motion = scene.motion;
+  motion.prepared.reset();
+  if (!motion.moves()) return;
+  const Shutter& shutter = motion.shutter;
+  if (!(shutter.close > shutter.open) || !std::isfinite(shutter.close - shutter.open))
+    throw Error(
+        fmt::format("scene '{}': the shutter opens at {} s and closes at {} s; expected it "
+                    "to close after it opens",
+                    scene.name, shutter.open, shutter.close));
+  motion.prepared = std::make_shared<PreparedMotion>();
+  MotionTracks& tracks = motion.prepared->tracks;
+  Motion& view = motion.prepared->view;
+  tracks.instances.resize(scene.instances.size() + 1);
+  for (const MotionData::MovingInstance& moving : motion.instances) {
+    if (moving.instance >= scene.instances.size())
+      throw Error(fmt::format("scene '{}': instance {} moves, of {}", scene.name, moving.instance,
+                              scene.instances.size()));
+    tracks.instances[moving.instance] =
+        add_track(moving.keys, shutter, fmt::format("instance {}", moving.instance), tracks);
+  }
+  if (!motion.camera.empty()) {
+    tracks.camera = add_track(motion.camera, shutter, "the camera", tracks);
+    view.to_camera = inverse(motion.camera.front().to_world);
+  }
+  view.segments = tracks.segments.data();
+  view.instances = tracks.instances.data();
+  view.camera = tracks.camera;
+}
+
+void prepare_moving_lights(SceneData& scene) {
+  if (!scene.motion.prepared) return;
+  PreparedMotion& motion = *scene.motion.prepared;
+  const std::vector<std::uint32_t>& first = scene.light_list.first;
+  motion.light_instances.clear();
+  for (const MotionData::MovingInstance& moving : scene.motion.instances) {
+    const std::uint32_t end = first[moving.instance + 1];
+    if (motion.light_instances.size() < end) motion.light_instances.resize(end, Motion::none);
+    for (std::uint32_t light = first[moving.instance]; light < end; ++light)
+      motion.light_instances[light] = moving.instance;
+  }
+  motion.view.light_instances = motion.light_instances.data();
+  motion.view.light_count = static_cast<std::uint32_t>(motion.light_instances.size());
+}
+
+}  // namespace pt
