@@ -67,8 +67,8 @@ PT_HD_IN_KERNEL void trace_paths(const Scene& scene, const Source& source,
         path = PathState{};
         path.index = path_index;
         id = samples.id_of(path_index);
-        set_time<Traits>(scene, id, path);
         random = source.open(id);
+        set_time<Traits>(scene, id, path);
         radiance = Color(0.0f);
       }
     }

@@ -68,6 +68,7 @@ const std::map<std::string, std::string>& other_values() {
       {"default-lighting", "off"},
       {"volume", "dense"},
       {"time", "-0.25"},
+      {"shutter", "0.5"},
       {"animation", "Run 2"},
       {"scene-from-disk", "on"},
       {"checkpoint", "c.exr,20.5"},
@@ -119,7 +120,8 @@ std::vector<std::string> arguments_for(const OptionEntry& entry, const std::stri
   if (entry.group == OptionGroup::metropolis) {
     arguments.insert(arguments.end(), {"--integrator", "mlt"});
   }
-  if (entry.name == "animation") arguments.insert(arguments.end(), {"--time", "1"});
+  if (entry.name == "animation" || entry.name == "shutter")
+    arguments.insert(arguments.end(), {"--time", "1"});
   if (entry.name == "optix-hits") arguments.insert(arguments.end(), {"--accel", "optix"});
   if (entry.name == "part") arguments.insert(arguments.end(), {"--checkpoint", "c.exr"});
   if (entry.name == "wave-rays") arguments.insert(arguments.end(), {"--stages", "fused"});
@@ -232,6 +234,7 @@ TEST(CommandLine, OptionsThatDetermineTheImage) {
                                           "define",
                                           "default-lighting",
                                           "time",
+                                          "shutter",
                                           "animation",
                                           "spheres",
                                           "create-world",

@@ -181,6 +181,8 @@ constexpr InertRule inert_rules[] = {
      "with --large-step-probability 1: no step is a small one"},
     {"finish-paths", [](const Options& o) { return o.integrator == IntegratorKind::mlt; },
      "with --integrator mlt: chains go on to the last wave"},
+    {"shutter", [](const Options& o) { return !o.time; },
+     "without --time: animations are not evaluated"},
     {"animation", [](const Options& o) { return !o.time; },
      "without --time: animations are not evaluated"},
     {"focus-distance", [](const Options& o) { return o.camera.aperture == 0.0f; },

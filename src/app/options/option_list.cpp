@@ -247,6 +247,14 @@ void add_scene(std::vector<OptionEntry>& list) {
            "nodes, morph targets and skins are as they are then. By\n"
            "default animations are ignored")
       .add(value(
+               "shutter", OptionForm::number, "SECONDS", &Options::shutter,
+               [](const std::string& name, const std::string& s) {
+                 return parse_number(name, s, "seconds above 0", [](float x) { return x > 0; });
+               },
+               [](const std::optional<float>& x) { return x ? number_text(*x) : ""; }),
+           "With --time: so long the shutter of a .gltf or .glb is open,\n"
+           "from that time on. What moves is blurred")
+      .add(value(
                "animation", OptionForm::number, "N|NAME", &Options::animation,
                [](const std::string& name, const std::string& s) {
                  if (s.empty()) refuse_value(name, s, "expected a number or a name");

@@ -50,6 +50,7 @@ SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& 
                                                       options.camera,
                                                       options.volume,
                                                       options.time,
+                                                      options.shutter,
                                                       options.animation});
     scene.source_hash = files.hash(std::filesystem::path(options.scene).parent_path());
     for (const auto& path : files.paths()) scene.source_files.push_back(path.string());
@@ -59,7 +60,8 @@ SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& 
       {options.strict, "strict"},
       {!options.definitions.empty(), "define"},
       {options.default_lighting != DefaultLighting::automatic, "default-lighting"},
-      {options.time.has_value(), "time"}};
+      {options.time.has_value(), "time"},
+      {options.shutter.has_value(), "shutter"}};
   for (const auto& [is_given, name] : of_files) {
     if (is_given)
       throw Error(

@@ -151,7 +151,7 @@ PT_HD void traverse_triangles_bvh2(const TriangleTree& tree, const Ray& ray, Que
     std::uint32_t next = none;
     if (!is_leaf(current)) {
       lanes_of(ray).count(LanePoint::node);
-      const Bvh2Node node = load_wide(&tree.bvh2[current]);
+      const Bvh2Node node = node_for(query, tree, current);
       const bool inside = instanced && entered >= 0;
       const Bvh2Step step = step_bvh2(node, local.slabs, query.t_min(),
                                       inside ? visit.limit(query.t_max()) : query.t_max());

@@ -155,6 +155,18 @@ PT_HD InstanceRecord placed_at(InstanceRecord instance, const Motion& motion, fl
   return instance;
 }
 
+/// The triangle of a slot, its vertices where they are at `time`.
+PT_HD Triangle triangle_at(const TriangleTree& tree, std::uint32_t slot, const Motion& motion,
+                           float time) {
+  Triangle triangle = load_wide(&tree.triangles[slot]);
+  if (motion.end_triangles == nullptr) return triangle;
+  const Triangle end = load_wide(&motion.end_triangles[slot]);
+  triangle.v0 = interpolate(triangle.v0, end.v0, time);
+  triangle.v1 = interpolate(triangle.v1, end.v1, time);
+  triangle.v2 = interpolate(triangle.v2, end.v2, time);
+  return triangle;
+}
+
 /// A query about what lies where at `time`.
 template <class Query>
 class MovingQuery : public Query {
@@ -164,6 +176,22 @@ class MovingQuery : public Query {
 
   PT_HD InstanceRecord placed(const InstanceRecord& instance) const {
     return placed_at(instance, motion_, time_);
+  }
+  PT_HD Triangle triangle(const TriangleTree& tree, std::uint32_t slot) const {
+    return triangle_at(tree, slot, motion_, time_);
+  }
+  /// Its boxes hold what they do at both ends of the time, and so all between.
+  PT_HD Bvh2Node node(const TriangleTree& tree, std::uint32_t index) const {
+    Bvh2Node node = load_wide(&tree.bvh2[index]);
+    if (index >= motion_.end_node_count) return node;
+    const Bvh2Node end = load_wide(&motion_.end_nodes[index]);
+    const auto between = [this](const Vec4& a, const Vec4& b) {
+      return Vec4(interpolate(a.x, b.x, time_), interpolate(a.y, b.y, time_),
+                  interpolate(a.z, b.z, time_), interpolate(a.w, b.w, time_));
+    };
+    for (int i = 0; i < 2; ++i) node.xy[i] = between(node.xy[i], end.xy[i]);
+    node.z = between(node.z, end.z);
+    return node;
   }
 
  private:
@@ -184,6 +212,17 @@ PT_HD decltype(auto) placed_for(const Query& query, const InstanceRecord& instan
   } else {
     return (instance);
   }
+}
+
+template <class Query>
+PT_HD Triangle triangle_for(const Query& query, const TriangleTree& tree, std::uint32_t slot) {
+  if constexpr (is_moving_query<Query>) return query.triangle(tree, slot);
+  return load_wide(&tree.triangles[slot]);
+}
+template <class Query>
+PT_HD Bvh2Node node_for(const Query& query, const TriangleTree& tree, std::uint32_t index) {
+  if constexpr (is_moving_query<Query>) return query.node(tree, index);
+  return load_wide(&tree.bvh2[index]);
 }
 
 /// A ray that is not finite or has no direction meets nothing. It must be sorted out before the
@@ -233,7 +272,7 @@ PT_HD bool offer_slots(const TriangleTree& tree, const TriangleRay& ray, std::ui
                        std::uint32_t count, Query& query) {
   PT_UNROLL(2)
   for (std::uint32_t slot = first; slot < first + count; ++slot) {
-    const Triangle triangle = load_wide(&tree.triangles[slot]);
+    const Triangle triangle = triangle_for(query, tree, slot);
     const TriangleHit hit = intersect_triangle(ray, triangle.v0, triangle.v1, triangle.v2);
     if constexpr (Query::has_masks) {
       if (query.hides(triangle, hit, hit.t, 0)) continue;
@@ -249,7 +288,7 @@ PT_HD bool offer_slots(const TriangleTree& tree, const TriangleRay& ray, std::ui
                        std::uint32_t count, const InstanceVisit& visit, std::uint32_t instance,
                        Query& query) {
   for (std::uint32_t slot = first; slot < first + count; ++slot) {
-    const Triangle triangle = load_wide(&tree.triangles[slot]);
+    const Triangle triangle = triangle_for(query, tree, slot);
     const TriangleHit hit = intersect_triangle(ray, triangle.v0, triangle.v1, triangle.v2);
     const float t = visit.moved(hit.t);
     if constexpr (Query::has_masks) {

@@ -26,6 +26,9 @@ struct Mesh {
   bool masked = false;      ///< set from the material: see TriangleAttributes
   /// Linear, by vertex and by triangle, or empty: what loaders make a texture of (vertex_colors.h).
   std::vector<Color> colors = {}, face_colors = {};
+  /// Of a mesh that deforms: where the vertices are when the shutter closes, and their normals;
+  /// between, all are linear in time. Empty: they stay.
+  std::vector<Vec3> end_positions = {}, end_normals = {};
 };
 
 /// The attributes of a triangle's corners, side by side: four 16-byte loads from two sectors of

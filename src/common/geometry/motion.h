@@ -75,6 +75,10 @@ PT_HD Affine pose_at(const MotionSegment* segments, const MotionTrack& track, fl
   return pose_in(segment, fminf(fmaxf(u, 0.0f), 1.0f));
 }
 
+struct Bvh2Node;
+struct Triangle;
+struct CornerAttributes;
+
 /// A view of all that moves in a scene, on the host.
 struct Motion {
   const MotionSegment* segments = nullptr;
@@ -83,6 +87,11 @@ struct Motion {
   /// `none`.
   const std::uint32_t* light_instances = nullptr;
   std::uint32_t light_count = 0;  ///< those after them are not moved
+  // Of meshes that deform: what is when the shutter closes. Null: none does.
+  const Triangle* end_triangles = nullptr;        ///< [slot], of which the vertices count
+  const CornerAttributes* end_corners = nullptr;  ///< [triangle id], of which the normals count
+  const Bvh2Node* end_nodes = nullptr;  ///< [node]; the boxes of those that are not over instances
+  std::uint32_t end_node_count = 0;
   MotionTrack camera;
   Affine to_camera;  ///< from the world, at the pose that the scene's camera describes
 

@@ -194,8 +194,10 @@ struct Options : ImageSettings, ExecutionSettings {
   bool strict = false;  ///< what a scene file has and ptexp lacks is an error
   DefaultLighting default_lighting = DefaultLighting::automatic;  ///< of scene files
   VolumeStorage volume = VolumeStorage::automatic;                ///< of sparse grids
-  std::optional<float> time;     ///< of a scene file's animations, seconds; none: ignored
-  std::string animation;         ///< its name or number; empty: all that do not conflict
+  std::optional<float> time;  ///< of a scene file's animations, seconds; none: ignored
+  std::optional<float>
+      shutter;            ///< seconds from `time` on while it is open; none: it moves nothing
+  std::string animation;  ///< its name or number; empty: all that do not conflict
   bool scene_from_disk = false;  ///< of a job's ranks: each reads the scene's files by itself
   CameraOverrides camera;
   std::optional<FilterChoice> filter;  ///< none: the scene file's, or a box of one pixel

@@ -264,6 +264,8 @@ void check_motion(const Options& o, const SceneProperties& scene, const DevicePr
     refuse("motion blur knows no media and no thin glass", "a scene without them");
   if (scene.has_masks)
     refuse("motion blur knows no masks, far planes or hidden emitters", "a scene without them");
+  if (scene.has_deforming_emitters)
+    refuse("meshes that deform cannot emit", "meshes that emit in instances that move");
   if (scene.has_moving_emitters && o.light_selection == LightSelection::tree)
     refuse("--light-selection tree knows no lights that move", "power or uniform");
 }

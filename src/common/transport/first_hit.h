@@ -75,7 +75,7 @@ PT_HD FirstHit first_hit(const Scene& scene, const Ray& ray, const Hit& hit, con
     return first;
   }
   if constexpr (Traits::geometry != Geometry::spheres_and_quads) {
-    const Triangle triangle = load_wide(&scene.triangles.triangles[hit.primitive - primitives]);
+    const Triangle triangle = triangle_of<Traits>(scene, hit.primitive - primitives, time);
     first.primitive = primitives + triangle.id;
     if (is_placed<Traits>(scene)) first.instance = scene.triangles.instances[hit.instance].index;
     if (!surface.material.is(Material::textured)) {

@@ -106,12 +106,28 @@ PT_HD Vec3 barycentric_at(const Ray& local, const Triangle& triangle) {
   return {1.0f - inside.b1 - inside.b2, inside.b1, inside.b2};
 }
 
-/// The instance of a hit; at `time`, where it moves.
+/// The instance of a hit, and a triangle; at `time`, where they move.
 template <class Traits>
 PT_HD InstanceRecord instance_at(const Scene& scene, std::uint32_t instance, float time) {
   const InstanceRecord record = load_wide(&scene.triangles.instances[instance]);
   if constexpr (Traits::has_motion) return placed_at(record, *scene.motion, time);
   return record;
+}
+template <class Traits>
+PT_HD Triangle triangle_of(const Scene& scene, std::uint32_t slot, float time) {
+  if constexpr (Traits::has_motion) return triangle_at(scene.triangles, slot, *scene.motion, time);
+  return load_wide(&scene.triangles.triangles[slot]);
+}
+template <class Traits>
+PT_HD CornerAttributes corners_of(const Scene& scene, std::uint32_t triangle_id, float time) {
+  CornerAttributes corners = load_wide(&scene.corners[triangle_id]);
+  if constexpr (Traits::has_motion) {
+    if (scene.motion->end_corners == nullptr) return corners;
+    const CornerAttributes end = load_wide(&scene.motion->end_corners[triangle_id]);
+    for (int i = 0; i < 3; ++i)
+      corners.normal[i] = interpolate(corners.normal[i], end.normal[i], time);
+  }
+  return corners;
 }
 template <class Traits>
 PT_HD Affine to_world_at(const Scene& scene, std::uint32_t index, float time) {
@@ -141,11 +157,11 @@ template <class Traits>
 PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hit,
                                float time = 0.0f) {
   const std::uint32_t slot = hit.primitive - scene.primitives.count();
-  const Triangle triangle = load_wide(&scene.triangles.triangles[slot]);
+  const Triangle triangle = triangle_of<Traits>(scene, slot, time);
   const bool has_uvs = (triangle.attributes & TriangleAttributes::uvs) != 0;
   const bool has_normals = (triangle.attributes & TriangleAttributes::normals) != 0;
   CornerAttributes corners;
-  if (has_uvs || has_normals) corners = load_wide(&scene.corners[triangle.id]);
+  if (has_uvs || has_normals) corners = corners_of<Traits>(scene, triangle.id, time);
   const Material material = scene.material(triangle.material);
   const bool placed = is_placed<Traits>(scene);
   InstanceRecord instance;

@@ -154,13 +154,14 @@ void add_instance_tree(TriangleTreeData& tree, std::span<const Instance> instanc
   tree.instances = std::move(top.instances);
 }
 
-void rebuild_instance_tree(TriangleTreeData& tree, std::span<const Instance> instances) {
+void rebuild_instance_tree(TriangleTreeData& tree, std::span<const Instance> instances,
+                           const MotionTracks& motion) {
   check_instances(instances);
   if (tree.instances.empty()) return;
   AccelKind accel = AccelKind::brute;
   if (!tree.bvh2.empty()) accel = AccelKind::bvh2, tree.bvh2.resize(tree.first_top_node);
   if (!tree.cwbvh.empty()) accel = AccelKind::cwbvh, tree.cwbvh.resize(tree.first_top_node);
-  add_instance_tree(tree, instances, accel);
+  add_instance_tree(tree, instances, accel, motion);
 }
 
 }  // namespace pt

@@ -35,6 +35,7 @@ void add_instance_tree(TriangleTreeData& tree, std::span<const Instance> instanc
 
 /// Builds the upper level again over instances of the same groups, whose transforms or groups'
 /// boxes have changed. A tree without one stays as it is. Throws Error as check_instances().
-void rebuild_instance_tree(TriangleTreeData& tree, std::span<const Instance> instances);
+void rebuild_instance_tree(TriangleTreeData& tree, std::span<const Instance> instances,
+                           const MotionTracks& motion = {});
 
 }  // namespace pt

@@ -4,7 +4,10 @@
 #include <memory>
 #include <vector>
 
+#include "common/accel/nodes.h"
+#include "common/geometry/mesh.h"
 #include "common/geometry/motion.h"
+#include "common/geometry/triangle.h"
 
 namespace pt {
 
@@ -23,6 +26,9 @@ struct Shutter {
 struct PreparedMotion {
   MotionTracks tracks;
   std::vector<std::uint32_t> light_instances;  ///< see Motion
+  std::vector<Triangle> end_triangles;
+  std::vector<CornerAttributes> end_corners;
+  std::vector<Bvh2Node> end_nodes;
   Motion view;
 
   PreparedMotion() = default;

@@ -101,6 +101,7 @@ Bounds scene_bounds(const SceneData& scene) {
   std::map<std::uint32_t, Bounds> groups;
   for (const Mesh& mesh : scene.meshes) {
     for (const Vec3& p : mesh.positions) groups[mesh.group].grow(p);
+    for (const Vec3& p : mesh.end_positions) groups[mesh.group].grow(p);
   }
   Bounds all = groups[0];
   const MotionTracks& motion = scene.motion.tracks();

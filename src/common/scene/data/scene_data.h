@@ -1,6 +1,7 @@
 // A scene in memory, owned: filled in by built-in scenes and loaders.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -137,6 +138,12 @@ struct SceneData {
   LightListData light_list;
   EnvironmentMap environment_map;
 
+  bool deforms() const {
+    return std::ranges::any_of(meshes,
+                               [](const Mesh& mesh) { return !mesh.end_positions.empty(); });
+  }
+  /// Whether anything moves while the shutter is open.
+  bool moves() const { return motion.moves() || deforms(); }
   std::size_t primitive_count() const { return spheres.size() + quads.size(); }
   std::uint64_t triangle_count() const;
 

@@ -122,7 +122,7 @@ MotionTrack add_track(const std::vector<TransformKey>& keys, const Shutter& shut
 void prepare_motion(SceneData& scene) {
   MotionData& motion = scene.motion;
   motion.prepared.reset();
-  if (!motion.moves()) return;
+  if (!scene.moves()) return;
   const Shutter& shutter = motion.shutter;
   if (!(shutter.close > shutter.open) || !std::isfinite(shutter.close - shutter.open))
     throw Error(

@@ -26,13 +26,20 @@ bool needs_triangles(const MaterialDescription& material) {
 }  // namespace
 
 bool has_primitives_only(const SceneData& scene) {
-  return !scene.motion.moves() && !is_limited(scene.camera) && !scene.camera.orthographic &&
+  return !scene.moves() && !is_limited(scene.camera) && !scene.camera.orthographic &&
          scene.meshes.empty() && scene.delta_lights.empty() && scene.environment.width == 0 &&
          scene.sun.one_minus_cos == 0.0f && scene.textures.empty() && scene.sphere_frames.empty() &&
          scene.media.empty() && std::ranges::none_of(scene.materials, needs_triangles);
 }
 
 namespace {
+
+bool has_deforming_emitters(const SceneData& scene) {
+  return std::ranges::any_of(scene.meshes, [&](const Mesh& mesh) {
+    return !mesh.end_positions.empty() &&
+           !is_black(scene.materials[mesh.material].emission.radiance);
+  });
+}
 
 bool has_moving_emitters(const SceneData& scene) {
   return std::ranges::any_of(scene.motion.instances, [&](const auto& moving) {
@@ -64,8 +71,9 @@ SceneProperties properties_of(const SceneData& scene) {
   properties.instances = scene.instances.size();
   if (!scene.instances.empty()) properties.tree_groups = groups_in_use(scene.instances).size();
   properties.is_primitive_only = has_primitives_only(scene);
-  properties.has_motion = scene.motion.moves();
+  properties.has_motion = scene.moves();
   properties.has_moving_emitters = has_moving_emitters(scene);
+  properties.has_deforming_emitters = has_deforming_emitters(scene);
   properties.has_masks =
       is_limited(scene.camera) || std::ranges::any_of(scene.materials, is_masked);
   properties.has_media = needs_media(scene);
@@ -180,7 +188,7 @@ bool resolve_shading(SceneData& scene, const SceneData& source, const Options& o
 bool resolve_changes(SceneData& scene, const SceneData& source, const SceneChanges& changes,
                      const Options& options) {
   if (changes.move_surfaces() &&
-      (scene.primitive_count() > 0 || !scene.media.empty() || scene.motion.moves()))
+      (scene.primitive_count() > 0 || !scene.media.empty() || scene.moves()))
     return false;
   if (changes.instances) scene.instances = source.instances;
   for (std::size_t i = 0; i < source.meshes.size(); ++i) {

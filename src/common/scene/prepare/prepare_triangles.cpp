@@ -55,6 +55,71 @@ std::vector<CornerAttributes> list_corners(const std::vector<Mesh>& meshes) {
   return corners;
 }
 
+std::vector<Mesh> meshes_at_end(const SceneData& scene) {
+  std::vector<Mesh> meshes = scene.meshes;
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    Mesh& mesh = meshes[i];
+    if (mesh.end_positions.empty()) continue;
+    const auto check = [&](const char* what, std::size_t end, std::size_t begin) {
+      if (end != begin)
+        throw Error(
+            fmt::format("scene '{}': mesh {} has {} {} when the shutter closes; expected "
+                        "{}, as when it opens",
+                        scene.name, i, end, what, begin));
+    };
+    check("positions", mesh.end_positions.size(), mesh.positions.size());
+    if (!mesh.end_normals.empty()) check("normals", mesh.end_normals.size(), mesh.normals.size());
+    mesh.positions = std::move(mesh.end_positions);
+    if (!mesh.end_normals.empty()) mesh.normals = std::move(mesh.end_normals);
+  }
+  return meshes;
+}
+
+/// Widens two ends of a plane by what interpolation between them rounds.
+void widen(float& begin, float& end, float side) {
+  const float size = std::max(std::abs(begin), std::abs(end));
+  begin += side * 8.0f * half_ulp * size, end += side * 8.0f * half_ulp * size;
+}
+
+void widen(Bvh2Node& begin, Bvh2Node& end) {
+  for (int i = 0; i < 4; ++i) {
+    const float side = i % 2 == 0 ? -1.0f : 1.0f;  // minima and maxima take turns
+    for (int child = 0; child < 2; ++child) widen(begin.xy[child][i], end.xy[child][i], side);
+    widen(begin.z[i], end.z[i], side);
+  }
+}
+
+/// The tree, fitted to both ends of the time; its upper level to all of it.
+void prepare_deformation(SceneData& scene) {
+  if (!scene.deforms()) return;
+  const std::vector<Mesh> meshes = meshes_at_end(scene);
+  TriangleTreeData& tree = scene.tree;
+  TriangleTreeData end = tree;
+  refit_triangle_tree(end, meshes, scene.instances);
+  for (std::size_t i = 0; i < tree.groups.size(); ++i) {
+    Bounds& box = tree.groups[i].bounds;
+    box.grow(end.groups[i].bounds);
+    for (int axis = 0; axis < 3; ++axis) {
+      float low = box.min[axis], high = box.max[axis];
+      widen(low, box.min[axis], -1.0f), widen(high, box.max[axis], 1.0f);
+    }
+  }
+  const bool is_flat = tree.instances.empty();
+  rebuild_instance_tree(tree, scene.instances, scene.motion.tracks());
+  PreparedMotion& motion = *scene.motion.prepared;
+  motion.end_triangles = std::move(end.triangles);
+  motion.end_nodes = std::move(end.bvh2);
+  if (!is_flat && !motion.end_nodes.empty()) motion.end_nodes.resize(tree.first_top_node);
+  for (std::size_t i = 0; i < motion.end_nodes.size(); ++i)
+    widen(tree.bvh2[i], motion.end_nodes[i]);
+  if (!scene.corners.empty()) motion.end_corners = list_corners(meshes);
+  Motion& view = motion.view;
+  view.end_triangles = motion.end_triangles.data();
+  view.end_corners = motion.end_corners.empty() ? nullptr : motion.end_corners.data();
+  view.end_nodes = motion.end_nodes.data();
+  view.end_node_count = static_cast<std::uint32_t>(motion.end_nodes.size());
+}
+
 /// In the order of InstanceRecord::number: the meshes of group 0 come last.
 std::vector<Affine> instance_transforms(const SceneData& scene) {
   std::vector<Affine> transforms;
@@ -80,7 +145,7 @@ void prepare_triangles(SceneData& scene, const ExecutionPlan& plan) {
   prepare_primitives(scene, !scene.spheres.empty(), bounds);
   scene.lights.clear();  // they are in light_list
   const bool masked = !scene.opacities.empty();
-  const bool mixed = scene.motion.moves() || masked || !scene.instances.empty() ||
+  const bool mixed = scene.moves() || masked || !scene.instances.empty() ||
                      !scene.spheres.empty() || accel == Accel::brute || accel == Accel::embree;
   scene.traits = {accel,
                   mixed ? Geometry::mixed : Geometry::triangles,
@@ -88,7 +153,7 @@ void prepare_triangles(SceneData& scene, const ExecutionPlan& plan) {
                   masked,
                   needs_media(scene),
                   false,
-                  scene.motion.moves()};
+                  scene.moves()};
   const TreeOptions tree = tree_options(accel, plan.builder);
   if (is_device_builder(plan.builder)) {
     check_geometry(scene.meshes, scene.instances);
@@ -97,6 +162,7 @@ void prepare_triangles(SceneData& scene, const ExecutionPlan& plan) {
     if (accel == Accel::embree) scene.embree = std::make_shared<const EmbreeTree>(scene.tree);
   }
   scene.corners = list_corners(scene.meshes);
+  prepare_deformation(scene);
   if (!scene.instances.empty()) scene.to_world = instance_transforms(scene);
   scene.light_list = list_lights(scene, bounds, plan.light_selection);
   prepare_moving_lights(scene);

@@ -462,6 +462,60 @@ TEST(GltfAnimations, TheOptionsChoose) {
   }
 }
 
+// Motion while the shutter is open.
+
+Loaded open_for(const GltfMaker& maker, float time, float shutter) {
+  LoadOptions options;
+  options.time = time, options.shutter = shutter;
+  return Loaded(maker.gltf(), false, "scene.gltf", options);
+}
+
+TEST(GltfShutter, NodesAndCamerasThatMoveGetKeys) {
+  GltfMaker maker = turning_triangle();
+  maker.root["cameras"] = {
+      {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+  maker.root["nodes"][0]["camera"] = 0;
+  maker.root["nodes"][0]["scale"] = {3, 3, 3};
+  const Loaded loaded = open_for(maker, 1.125f, 0.25f);
+  const SceneData& scene = loaded.scene;
+  EXPECT_EQ(scene.motion.shutter.close - scene.motion.shutter.open, 0.25f);
+  ASSERT_EQ(scene.instances.size(), 1u);
+  ASSERT_EQ(scene.motion.instances.size(), 1u);
+  EXPECT_EQ(scene.meshes.at(0).group, scene.instances[0].group);
+  const auto& keys = scene.motion.instances[0].keys;
+  ASSERT_EQ(keys.size(), scene.motion.camera.size());
+  EXPECT_EQ(keys.front().time, 0.0f);
+  EXPECT_EQ(keys.back().time, 0.25f);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const float angle = 2 * pi_f * (0.125f + keys[i].time);
+    const Vec3 x(std::cos(angle), std::sin(angle), 0);
+    expect_near(keys[i].to_world.point({1, 0, 0}), 3.0f * x);
+    expect_near(scene.motion.camera[i].to_world.vector({1, 0, 0}), x);
+  }
+  expect_near(scene.camera.up, scene.motion.camera[0].to_world.vector({0, 1, 0}));
+  // What stands still has none.
+  const Loaded still = open_for(maker, 5, 1);
+  EXPECT_FALSE(still.scene.moves());
+  EXPECT_TRUE(still.scene.instances.empty());
+  LoadOptions options;
+  options.shutter = 1.0f;
+  expect_error([&] { Loaded(maker.gltf(), false, "scene.gltf", options); },
+               "scene.gltf: --shutter: expected --time, when it opens");
+}
+
+TEST(GltfShutter, MorphTargetsDeformMeshes) {
+  GltfMaker maker = morphing_triangle();
+  animate(maker, 0, "weights", maker.floats({0, 2}, "SCALAR"),
+          maker.floats({0, 1, 0.5f, 0}, "SCALAR"));
+  maker.root["meshes"][0]["primitives"][0]["targets"][0].erase("TEXCOORD_0");
+  const Loaded loaded = open_for(maker, 0, 1);
+  const Mesh& mesh = first_mesh(loaded);
+  EXPECT_FALSE(loaded.scene.motion.moves());
+  ASSERT_EQ(mesh.end_positions.size(), mesh.positions.size());
+  expect_near(mesh.positions[0], {0, 1, 0});
+  expect_near(mesh.end_positions[0], {0.25f, 0.5f, 0});
+}
+
 TEST(GltfAnimations, WithoutATimeOrWithoutAnimations) {
   const Sliding maker;
   const Loaded still(maker);

@@ -554,9 +554,12 @@ TEST(PbrtWarnings, OfDirectives) {
        {"ObjectBegin \"o\" ObjectEnd ObjectBegin \"o\" ObjectEnd",
         "an object 'o' was defined before"},
        {"TransformTimes 0 1 ActiveTransform All"},
-       {"ActiveTransform StartTime ActiveTransform EndTime ActiveTransform All",
-        "motion is not supported"},
-       {"ActiveTransform EndTime Scale 2 2 2 ActiveTransform All", "motion is not supported"},
+       {"ActiveTransform EndTime Scale 2 2 2 ActiveTransform All"},
+       {"TransformTimes 2 1", "expected the end after the beginning"},
+       {"ActiveTransform EndTime Translate 1 0 0 LightSource \"point\"",
+        "LightSources that move are not supported"},
+       {"ObjectBegin \"m\" ActiveTransform EndTime Translate 1 0 0 " + ball + "ObjectEnd",
+        "shapes that move inside of an object are not supported"},
        {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" MakeNamedMedium \"m\" \"string "
         "type\" "
         "\"homogeneous\"",
@@ -773,16 +776,44 @@ TEST(PbrtParameters, CropsAreRoundedUp) {
   EXPECT_EQ(crop("[-1 .5 .5 2]"), (CropWindow{0, 10, 5, 20}));
 }
 
-// Everything is where it begins: what moves the end alone moves nothing.
-TEST(PbrtParameters, TransformationsOfTheStartCount) {
-  const auto center = [](const std::string& text) {
-    return load_pbrt_text(world(text + ball)).scene.spheres.at(0).center;
-  };
-  expect_near(center("ActiveTransform All Translate 1 2 3"), {1, 2, 3});
-  expect_near(center("ActiveTransform StartTime Translate 1 2 3"), {1, 2, 3});
-  expect_near(center("ActiveTransform EndTime Translate 1 2 3"), {0, 0, 0});
-  expect_near(center("ActiveTransform EndTime Translate 1 2 3 ActiveTransform All Translate 0 5 0"),
-              {0, 5, 0});
+TEST(PbrtParameters, WhatMovesIsAnInstanceOfTwoKeys) {
+  const SceneData all = load_pbrt_silently(world("ActiveTransform All Translate 1 2 3 " + ball));
+  expect_near(all.spheres.at(0).center, {1, 2, 3});
+  EXPECT_FALSE(all.motion.moves());
+  const SceneData scene = load_pbrt_silently(
+      "TransformTimes 0.5 2 " +
+      world("ActiveTransform EndTime Translate 1 2 3 ActiveTransform All Translate 0 5 0 " + ball +
+            ball + "ActiveTransform StartTime Scale 2 2 2 " + ball));
+  EXPECT_TRUE(scene.spheres.empty());
+  ASSERT_EQ(scene.instances.size(), 2u);  // the first two move together
+  ASSERT_EQ(scene.motion.instances.size(), 2u);
+  EXPECT_EQ(scene.meshes.at(0).group, scene.instances[0].group);
+  EXPECT_EQ(scene.meshes.at(1).group, scene.instances[0].group);
+  EXPECT_EQ(scene.meshes.at(2).group, scene.instances[1].group);
+  const auto& keys = scene.motion.instances[0].keys;
+  ASSERT_EQ(keys.size(), 2u);
+  EXPECT_EQ(keys[0].time, 0.5f);
+  EXPECT_EQ(keys[1].time, 2.0f);
+  expect_near(keys[0].to_world.translation(), {0, 5, 0});
+  expect_near(keys[1].to_world.translation(), {1, 7, 3});
+  EXPECT_EQ(scene.motion.instances[1].keys[0].to_world.row[0].x, 2.0f);
+  EXPECT_EQ(scene.motion.instances[1].keys[1].to_world.row[0].x, 1.0f);
+}
+
+TEST(PbrtParameters, CamerasAndObjectsMove) {
+  const SceneData scene = load_pbrt_silently(
+      "Film \"rgb\" ActiveTransform EndTime Translate 0 0 4 ActiveTransform All Camera "
+      "\"perspective\" \"float shutteropen\" 0.25 \"float shutterclose\" 0.5 WorldBegin " +
+      lit + "ObjectBegin \"o\" " + ball +
+      "ObjectEnd ActiveTransform EndTime Rotate 90 0 0 1 ActiveTransform All ObjectInstance "
+      "\"o\"");
+  EXPECT_EQ(scene.motion.shutter.open, 0.25f);
+  EXPECT_EQ(scene.motion.shutter.close, 0.5f);
+  ASSERT_EQ(scene.motion.camera.size(), 2u);
+  expect_near(scene.motion.camera[0].to_world.translation(), {0, 0, 0});
+  expect_near(scene.motion.camera[1].to_world.translation(), {0, 0, -4});
+  ASSERT_EQ(scene.motion.instances.size(), 1u);
+  expect_near(scene.motion.instances[0].keys[1].to_world.point({1, 0, 0}), {0, 1, 0});
 }
 
 // A material that is all of the second, or of the first, is that one.

@@ -26,7 +26,8 @@ struct LoadOptions {
   CameraOverrides camera{};  ///< through which default lighting is decided, besides the file's
   VolumeStorage volume = VolumeStorage::automatic;  ///< of sparse grids
   std::optional<float> time{};  ///< seconds at which animations are evaluated; none: they are not
-  std::string animation{};      ///< name or number of one; empty: all that do not conflict
+  std::optional<float> shutter{};  ///< seconds from `time` on of which the image is the mean
+  std::string animation{};         ///< name or number of one; empty: all that do not conflict
   /// Pictures of "bitmap" and "envmap" and grids of "gridvolume" in memory, named likewise.
   std::map<std::string, std::shared_ptr<const TextureImage>> images{};
   std::map<std::string, VolumeData> volumes{};

@@ -258,7 +258,7 @@ int find_animation(const File& file, const std::string& choice) {
 
 }  // namespace
 
-void pose_nodes(File& file, const LoadOptions& options) {
+void pose_nodes(File& file, const LoadOptions& options, float after_s) {
   const auto& animations = file.model.animations;
   if (animations.empty()) {
     if (options.time) file.report("", "no animations: --time has no effect");
@@ -270,7 +270,7 @@ void pose_nodes(File& file, const LoadOptions& options) {
         "animations are ignored: everything is as its nodes place it; --time evaluates them");
     return;
   }
-  Poser poser(file, *options.time);
+  Poser poser(file, *options.time + after_s);
   if (!options.animation.empty()) return poser.play(find_animation(file, options.animation));
   std::size_t left_out = 0;
   for (std::size_t i = 0; i < animations.size(); ++i) {
@@ -280,11 +280,65 @@ void pose_nodes(File& file, const LoadOptions& options) {
       ++left_out;
     }
   }
-  if (left_out == 0) return;
+  if (left_out == 0 || after_s > 0.0f) return;
   file.note(fmt::format(
       "{} of {} animations move what one before them moves and are left out: --animation takes "
       "one of {}",
       left_out, animations.size(), list_of(animations)));
+}
+
+namespace {
+
+bool is_same(const Affine& a, const Affine& b) {
+  return a.row[0] == b.row[0] && a.row[1] == b.row[1] && a.row[2] == b.row[2];
+}
+
+/// Intervals between the times at which all is placed.
+constexpr int shutter_steps = 16;
+
+}  // namespace
+
+MovingNodes place_moving_nodes(File& file, const LoadOptions& options) {
+  if (!options.shutter) {
+    pose_nodes(file, options);
+    return {place_nodes(file), {}, {}};
+  }
+  if (!options.time) file.fail("", "--shutter: expected --time, when it opens");
+  const std::vector<tinygltf::Node> nodes = file.model.nodes;
+  const auto seconds = [&](int i) {
+    return *options.shutter * static_cast<float>(i) / shutter_steps;
+  };
+  MovingNodes result;
+  std::vector<std::vector<PlacedNode>> at(shutter_steps + 1);
+  for (int i = shutter_steps; i >= 0; --i) {  // what it opens on comes last and stays
+    file.model.nodes = nodes;
+    pose_nodes(file, options, seconds(i));
+    at[static_cast<std::size_t>(i)] = place_nodes(file);
+    if (i < shutter_steps) continue;
+    for (const auto& node : file.model.nodes) result.end_weights.push_back(node.weights);
+    for (const PlacedNode& node : at.back()) result.end_places[node.node] = node.to_world;
+  }
+  result.nodes = at[0];
+  bool lamps = false;
+  for (std::size_t n = 0; n < result.nodes.size(); ++n) {
+    PlacedNode& node = result.nodes[n];
+    std::vector<TransformKey> keys;
+    bool moves = false;
+    for (int i = 0; i <= shutter_steps; ++i) {
+      const auto& then = at[static_cast<std::size_t>(i)];
+      if (n >= then.size() || then[n].node != node.node) break;  // some overflow at times
+      keys.push_back({seconds(i), then[n].to_world});
+      moves = moves || !is_same(keys.back().to_world, node.to_world);
+    }
+    if (!moves) continue;
+    node.keys = std::move(keys);
+    const auto& source = file.model.nodes[static_cast<std::size_t>(node.node)];
+    lamps = lamps || find_extension(source.extensions, "KHR_lights_punctual") != nullptr;
+  }
+  if (lamps)
+    file.report("animations",
+                "--shutter: lights without extent stand as they are when the shutter opens");
+  return result;
 }
 
 }  // namespace pt::gltf

@@ -60,6 +60,16 @@ void set_orthographic(File& file, const tinygltf::OrthographicCamera& source,
   }
 }
 
+/// Where the node's axes and place take a camera, without their scale.
+Affine camera_pose(const Affine& to_world) {
+  const Vec3 back = normalize(to_world.vector({0, 0, 1})), up = to_world.vector({0, 1, 0});
+  const Vec3 right = normalize(glm::cross(up, back)), above = glm::cross(back, right);
+  Affine pose;
+  for (int i = 0; i < 3; ++i)
+    pose.row[i] = {right[i], above[i], back[i], to_world.translation()[i]};
+  return pose;
+}
+
 /// Looks along the node's -z with +y up; its scale has no effect (specification, section 3.10).
 /// False, and a warning, for a node that has no such directions.
 bool set_pose(File& file, const PlacedNode& node, const Bounds& bounds, CameraParameters& camera) {
@@ -93,6 +103,8 @@ bool set_camera(File& file, const std::vector<PlacedNode>& nodes, const Bounds& 
         !set_pose(file, node, bounds, scene.camera)) {
       continue;
     }
+    for (const TransformKey& key : node.keys)
+      scene.motion.camera.push_back({key.time, camera_pose(key.to_world)});
     const tinygltf::Camera& source = file.model.cameras[static_cast<std::size_t>(index)];
     const std::string place = fmt::format("cameras[{}]", index);
     if (source.type == "perspective") {

@@ -32,45 +32,66 @@ void report_ignored(File& file) {
 /// moved by a skin, which no two nodes share here.
 struct Shape {
   int mesh = -1;
-  std::vector<double> weights;
-  int skinned_by = -1;  ///< the node with the skin, -1: none
+  std::vector<double> weights, end_weights;  ///< the latter as the shutter closes
+  int skinned_by = -1;                       ///< the node with the skin, -1: none
 
   auto operator<=>(const Shape&) const = default;
 };
 using Uses = std::map<Shape, std::vector<const PlacedNode*>>;
 
-Uses uses_of_meshes(File& file, const std::vector<PlacedNode>& nodes) {
+/// Those of a node, else of its mesh; what is no number is 0.
+std::vector<double> weights_of(const std::vector<double>& own, const std::vector<double>& of_mesh) {
+  std::vector<double> weights = own.empty() ? of_mesh : own;
+  for (double& weight : weights) {
+    if (!std::isfinite(static_cast<float>(weight))) weight = 0.0;
+  }
+  return weights;
+}
+
+Uses uses_of_meshes(File& file, const MovingNodes& moving) {
   Uses uses;
-  for (const PlacedNode& node : nodes) {
+  for (const PlacedNode& node : moving.nodes) {
     const auto& source = file.model.nodes[static_cast<std::size_t>(node.node)];
     if (source.mesh < 0 || !file.has(file.model.meshes, source.mesh, "meshes",
                                      node_place(node.node) + ".mesh", "the node has no mesh")) {
       continue;
     }
     const auto& mesh = file.model.meshes[static_cast<std::size_t>(source.mesh)];
-    Shape shape{source.mesh, source.weights.empty() ? mesh.weights : source.weights,
+    Shape shape{source.mesh,
+                weights_of(source.weights, mesh.weights),
+                {},
                 source.skin >= 0 ? node.node : -1};
-    for (double& weight : shape.weights) {
-      if (!std::isfinite(static_cast<float>(weight))) weight = 0.0;
-    }
+    shape.end_weights =
+        moving.end_weights.empty()
+            ? shape.weights
+            : weights_of(moving.end_weights[static_cast<std::size_t>(node.node)], mesh.weights);
     uses[shape].push_back(&node);
   }
   return uses;
 }
 
+bool is_invertible(const PlacedNode& node) {
+  return node.to_world.determinant() != 0.0f &&
+         std::ranges::none_of(
+             node.keys, [](const TransformKey& key) { return key.to_world.determinant() == 0.0f; });
+}
+
 /// Adds the meshes of the file to the scene.
 class MeshAdder {
  public:
-  MeshAdder(File& file, const std::vector<PlacedNode>& nodes, const LoadOptions& options,
-            SceneData& scene)
-      : file_(file), scene_(scene), materials_(file, scene), colors_(scene, options) {
-    for (const PlacedNode& node : nodes) places_[node.node] = node.to_world;
+  MeshAdder(File& file, const MovingNodes& moving, const LoadOptions& options, SceneData& scene)
+      : file_(file),
+        scene_(scene),
+        materials_(file, scene),
+        colors_(scene, options),
+        end_places_(moving.end_places) {
+    for (const PlacedNode& node : moving.nodes) places_[node.node] = node.to_world;
     materials_.read_ahead();
   }
 
   void add(const Shape& shape, const std::vector<const PlacedNode*>& users) {
     bool in_world = false;
-    const std::vector<Part> parts = read_parts(shape, *users.front(), in_world);
+    const std::vector<Part> parts = read_moving_parts(shape, *users.front(), in_world);
     if (parts.empty()) return;
     if (in_world) {
       for (const Part& part : parts) push(part.mesh, part);
@@ -79,13 +100,19 @@ class MeshAdder {
     // Instances need a map that can be inverted.
     std::vector<const PlacedNode*> instances;
     for (const PlacedNode* user : users) {
-      if (users.size() > 1 && user->to_world.determinant() != 0.0f) {
+      const bool repeats = users.size() > 1 || !user->keys.empty();
+      if (repeats && is_invertible(*user)) {
         instances.push_back(user);
         continue;
       }
       for (const Part& part : parts) {
         Mesh mesh = part.mesh;
         bake(file_, user->to_world, node_place(user->node), mesh);
+        if (!mesh.end_positions.empty()) {
+          Mesh end = at_end(part.mesh);
+          bake(file_, user->to_world, node_place(user->node), end);
+          set_end(mesh, std::move(end));
+        }
         push(std::move(mesh), part);
       }
     }
@@ -101,18 +128,66 @@ class MeshAdder {
     std::string name = {};
   };
 
+  /// As it is when the shutter closes.
+  static Mesh at_end(const Mesh& mesh) {
+    Mesh end = mesh;
+    end.positions = end.end_positions;
+    if (!end.end_normals.empty()) end.normals = end.end_normals;
+    return end;
+  }
+
+  /// Takes the end of a deformation from the same mesh as it is then. False: it is another one.
+  static bool set_end(Mesh& mesh, Mesh&& end) {
+    mesh.end_positions.clear(), mesh.end_normals.clear();
+    const auto same = [](const TriangleIndices& a, const TriangleIndices& b) {
+      return std::ranges::equal(a.v, b.v);
+    };
+    if (mesh.positions.size() != end.positions.size() ||
+        !std::ranges::equal(mesh.triangles, end.triangles, same))
+      return false;
+    if (mesh.positions != end.positions || mesh.normals != end.normals) {
+      mesh.end_positions = std::move(end.positions);
+      if (mesh.normals.size() == end.normals.size()) mesh.end_normals = std::move(end.normals);
+    }
+    return true;
+  }
+
+  /// With what skins and morph targets make of them until the shutter closes.
+  std::vector<Part> read_moving_parts(const Shape& shape, const PlacedNode& user, bool& in_world) {
+    std::vector<Part> parts = read_parts(shape, shape.weights, places_, user, in_world);
+    if (end_places_.empty() || (shape.skinned_by < 0 && shape.end_weights == shape.weights))
+      return parts;
+    bool end_in_world = false;
+    PlacedNode end_user = user;
+    if (!user.keys.empty()) end_user.to_world = user.keys.back().to_world;
+    std::vector<Part> end =
+        read_parts(shape, shape.end_weights, end_places_, end_user, end_in_world);
+    bool is_same = parts.size() == end.size() && in_world == end_in_world;
+    for (std::size_t i = 0; is_same && i < parts.size(); ++i)
+      is_same = set_end(parts[i].mesh, std::move(end[i].mesh));
+    if (!is_same) {
+      for (Part& part : parts) part.mesh.end_positions.clear(), part.mesh.end_normals.clear();
+      file_.report(fmt::format("meshes[{}]", shape.mesh),
+                   "--shutter: other triangles when the shutter closes: the mesh stays as it is "
+                   "when it opens");
+    }
+    return parts;
+  }
+
   /// `in_world`: a skin has put them into world space.
-  std::vector<Part> read_parts(const Shape& shape, const PlacedNode& user, bool& in_world) {
+  std::vector<Part> read_parts(const Shape& shape, const std::vector<double>& weights,
+                               const std::unordered_map<int, Affine>& places,
+                               const PlacedNode& user, bool& in_world) {
     std::vector<Affine> joints;
     if (shape.skinned_by >= 0) {
       const int skin = file_.model.nodes[static_cast<std::size_t>(shape.skinned_by)].skin;
-      joints = joint_matrices(file_, skin, places_, node_place(shape.skinned_by));
+      joints = joint_matrices(file_, skin, places, node_place(shape.skinned_by));
     }
     in_world = !joints.empty();
     const std::string place = fmt::format("meshes[{}]", shape.mesh);
     const std::string& name = file_.model.meshes[static_cast<std::size_t>(shape.mesh)].name;
     std::vector<Part> parts;
-    for (PrimitiveMesh& primitive : read_primitives(file_, shape.mesh, shape.weights)) {
+    for (PrimitiveMesh& primitive : read_primitives(file_, shape.mesh, weights)) {
       if (in_world && primitive.influences.per_vertex > 0) {
         apply_skin(file_, joints, primitive.influences, place, primitive.mesh);
       } else if (in_world) {
@@ -149,7 +224,12 @@ class MeshAdder {
       mesh.group = groups_;
       push(std::move(mesh), part);
     }
-    for (const PlacedNode* node : nodes) scene_.instances.push_back({groups_, node->to_world});
+    for (const PlacedNode* node : nodes) {
+      if (!node->keys.empty())
+        scene_.motion.instances.push_back(
+            {static_cast<std::uint32_t>(scene_.instances.size()), node->keys});
+      scene_.instances.push_back({groups_, node->to_world});
+    }
   }
 
   File& file_;
@@ -158,6 +238,7 @@ class MeshAdder {
   VertexColors colors_;
   const ReadAhead ahead_;
   std::unordered_map<int, Affine> places_;  ///< by node
+  const std::unordered_map<int, Affine>& end_places_;
   std::uint32_t groups_ = 0;
 };
 
@@ -168,12 +249,13 @@ SceneData load_gltf(const std::filesystem::path& path, const LoadOptions& option
   File file(path.string(), std::move(read.model), options);
   for (const std::string& warning : read.warnings) file.report("", warning);
   report_ignored(file);
-  pose_nodes(file, options);
   SceneData scene;
   scene.name = path.filename().string();
-  const std::vector<PlacedNode> nodes = place_nodes(file);
-  MeshAdder meshes(file, nodes, options, scene);
-  for (const auto& [shape, users] : uses_of_meshes(file, nodes)) meshes.add(shape, users);
+  const MovingNodes moving = place_moving_nodes(file, options);
+  const std::vector<PlacedNode>& nodes = moving.nodes;
+  if (options.shutter) scene.motion.shutter = {0.0f, *options.shutter};
+  MeshAdder meshes(file, moving, options, scene);
+  for (const auto& [shape, users] : uses_of_meshes(file, moving)) meshes.add(shape, users);
   meshes.finish();
   if (scene.meshes.empty()) {
     const std::string& last = file.last_report();

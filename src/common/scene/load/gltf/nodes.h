@@ -2,6 +2,7 @@
 // (KHR_lights_punctual).
 #pragma once
 
+#include <unordered_map>
 #include <vector>
 
 #include "common/geometry/bounds.h"
@@ -14,22 +15,35 @@ namespace pt::gltf {
 struct PlacedNode {
   int node = 0;  ///< number in the file
   Affine to_world;
+  std::vector<TransformKey> keys = {};  ///< while the shutter is open, if it moves
 };
 
 /// "nodes[7]"
 std::string node_place(int node);
 
-/// Evaluates the animations that the options choose, at their time: translation, rotation, scale
-/// and weights of the file's nodes become what they are then. A channel that cannot be used is left
-/// out; so are, without a time, all of them. Both are reported. Throws Error for accessors that are
-/// malformed and for an animation that the file lacks.
-void pose_nodes(File& file, const LoadOptions& options);
+/// Evaluates the animations that the options choose, at their time plus `after_s`: translation,
+/// rotation, scale and weights of the file's nodes become what they are then. A channel that cannot
+/// be used is left out; so are, without a time, all of them. Both are reported. Throws Error for
+/// accessors that are malformed and for an animation that the file lacks.
+void pose_nodes(File& file, const LoadOptions& options, float after_s = 0.0f);
 
 /// All nodes of the default scene, parents before their children, in the order of the file. A node
 /// that is its own ancestor or has two parents is placed once, a part of a transformation that
 /// cannot be used is left out, and a node that no number can place is lost with its children; each
 /// is reported.
 std::vector<PlacedNode> place_nodes(File& file);
+
+/// Nodes while the shutter is open.
+struct MovingNodes {
+  std::vector<PlacedNode> nodes;
+  // When it closes; empty without --shutter:
+  std::unordered_map<int, Affine> end_places;    ///< by number of a node
+  std::vector<std::vector<double>> end_weights;  ///< of morph targets, likewise
+};
+
+/// pose_nodes() and place_nodes() at the options' time; with --shutter also at times until it
+/// closes, of which those nodes that move get keys.
+MovingNodes place_moving_nodes(File& file, const LoadOptions& options);
 
 // Cameras.
 

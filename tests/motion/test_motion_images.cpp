@@ -1,0 +1,204 @@
+// Images of what moves against integrals over time in closed form, and against renders of scenes
+// that stand still.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "common/scene/prepare/prepare_steps.h"
+#include "scene/moving_room.h"
+#include "statistics.h"
+
+namespace pt {
+namespace {
+
+Image image_of_motion(SceneData scene, Options options, const char* accel = "bvh2") {
+  options.accel = accel == std::string("bvh2") ? AccelKind::bvh2 : AccelKind::brute;
+  if (options.mode == Mode::automatic) options.mode = Mode::megakernel;
+  prepare_scene_for(scene, options, cpu_of_motion());
+  const auto renderer = make_renderer(options, scene, cpu_of_motion());
+  renderer->render({});
+  return renderer->image();
+}
+
+/// 16 x 1 pixels, each of size 1 in the plane z = 0, and a shining square of x in [2, 5].
+SceneData band_scene() {
+  SceneData scene;
+  scene.name = "band";
+  scene.camera.look_from = {8, 0, 10}, scene.camera.look_at = {8, 0, 0};
+  scene.camera.orthographic = true, scene.camera.orthographic_size = {8, 8};
+  scene.add_material(make_diffuse(Color(0.0f), Color(1.0f)));
+  scene.meshes = {square_of(2, 5, -9, 9, 0, 0, 1)};
+  scene.instances = {{1, {}}};
+  return scene;
+}
+
+/// Time for which a pixel of the band sees the square, which goes `way` pixels to the right.
+double seen_part(int pixel, double way) {
+  const auto area = [&](double x, double edge) {  // under the time for which the edge is left of x
+    const double d = std::clamp(x - edge, 0.0, way);
+    return d * d / (2 * way) + std::max(0.0, x - edge - way);
+  };
+  const auto mean = [&](double edge) { return area(pixel + 1, edge) - area(pixel, edge); };
+  return mean(2) - mean(5);
+}
+
+void expect_band(const Image& image, const std::function<double(int)>& expected) {
+  for (int x = 0; x < 16; ++x) EXPECT_NEAR(image.pixel(x, 0)[0], expected(x), 0.012) << x;
+}
+
+class MotionOfSampler : public testing::TestWithParam<SamplerKind> {};
+INSTANTIATE_TEST_SUITE_P(Samplers, MotionOfSampler,
+                         testing::Values(SamplerKind::independent, SamplerKind::stratified,
+                                         SamplerKind::sobol));
+
+TEST_P(MotionOfSampler, AMovingSquareIsItsIntegralOverTime) {
+  Options options = motion_options(16, 1, 16384);
+  options.sampler = GetParam();
+  SceneData scene = band_scene();
+  scene.motion.instances = {{0, {{0.0f, {}}, {1.0f, translate({6, 0, 0})}}}};
+  expect_band(image_of_motion(scene, options), [](int x) { return seen_part(x, 6); });
+  scene.motion.shutter = {0.25f, 0.75f};  // half of the way, from its quarter on
+  for (Vec3& p : scene.meshes[0].positions) p.x -= 1.5f;
+  expect_band(image_of_motion(scene, options), [](int x) { return seen_part(x, 3); });
+}
+
+TEST_P(MotionOfSampler, AMovingCameraIsItsIntegralOverTime) {
+  Options options = motion_options(16, 1, 16384);
+  options.sampler = GetParam();
+  SceneData scene = band_scene();
+  const Affine place = translate({8, 0, 10});
+  scene.motion.camera = {{0.0f, place}, {1.0f, translate({-6, 0, 0}) * place}};
+  expect_band(image_of_motion(scene, options), [](int x) { return seen_part(x, 6); });
+}
+
+TEST_P(MotionOfSampler, ADeformingSquareIsItsIntegralOverTime) {
+  Options options = motion_options(16, 1, 16384);
+  options.sampler = GetParam();
+  SceneData scene = band_scene();
+  Mesh& mesh = scene.meshes[0];
+  mesh.end_positions = mesh.positions;
+  for (Vec3& p : mesh.end_positions) p.x += 6;
+  scene.materials[0] = make_diffuse(Color(0.0f));
+  scene.sky.nadir = scene.sky.zenith = Color(1.0f);  // before which it is black
+  const auto expected = [](int x) { return 1 - seen_part(x, 6); };
+  expect_band(image_of_motion(scene, options), expected);
+  expect_band(image_of_motion(scene, options, "brute"), expected);
+  scene.instances.clear(), mesh.group = 0;
+  expect_band(image_of_motion(scene, options), expected);
+}
+
+TEST(MotionImages, ACameraAndAThingThatMoveTogetherStandStill) {
+  SceneData scene = band_scene();
+  const Affine place = translate({8, 0, 10});
+  scene.motion.camera = {{0.0f, place}, {1.0f, translate({3, 2, 1}) * place}};
+  scene.motion.instances = {{0, {{0.0f, {}}, {1.0f, translate({3, 2, 1})}}}};
+  expect_band(image_of_motion(scene, motion_options(16, 1, 64)),
+              [](int x) { return x >= 2 && x < 5 ? 1.0 : 0.0; });
+}
+
+TEST(MotionImages, AreTheSameInAllModesAndStructures) {
+  for (const SamplerKind sampler :
+       {SamplerKind::independent, SamplerKind::stratified, SamplerKind::sobol}) {
+    Options options = motion_options(40, 30, 4, 5);
+    options.sampler = sampler;
+    options.mode = Mode::serial;
+    const std::vector<float> serial = image_of_motion(moving_room(), options).rgb;
+    for (const char* accel : {"bvh2", "brute"}) {
+      options.mode = Mode::megakernel;
+      EXPECT_EQ(image_of_motion(moving_room(), options, accel).rgb, serial) << accel;
+      options.mode = Mode::wavefront;
+      for (const Stages stages : {Stages::split, Stages::fused}) {
+        options.stages = stages, options.finish_paths = 0, options.pool_size = 333;
+        EXPECT_EQ(image_of_motion(moving_room(), options, accel).rgb, serial) << accel;
+      }
+      options.stages = Stages::automatic, options.finish_paths = {}, options.pool_size = 0;
+    }
+  }
+}
+
+/// Means over columns of 8 pixels of the image's halves, by renders of different seeds.
+std::vector<MeanEstimate> region_means(const std::function<Image(std::uint64_t)>& render,
+                                       int count) {
+  std::vector<MeanEstimate> means(8);
+  for (int seed = 0; seed < count; ++seed) {
+    const Image image = render(static_cast<std::uint64_t>(seed + 1));
+    std::vector<double> sums(8);
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x)
+        sums[static_cast<std::size_t>(4 * (2 * y / image.height) + 4 * x / image.width)] +=
+            double{image.pixel(x, y)[0]};
+    for (std::size_t i = 0; i < sums.size(); ++i) means[i].add(sums[i]);
+  }
+  return means;
+}
+
+void expect_same_means(const std::vector<MeanEstimate>& a, const std::vector<MeanEstimate>& b,
+                       const char* what) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double sigma = std::hypot(a[i].sigma(), b[i].sigma());
+    EXPECT_LT(std::abs(a[i].mean() - b[i].mean()), 5 * sigma) << what << ", region " << i;
+    EXPECT_LT(sigma, 0.05 * a[i].mean()) << what << ", region " << i;
+  }
+}
+
+/// The room as it stands at a part of the shutter's interval.
+SceneData room_at(float time) {
+  SceneData scene = moving_room();
+  prepare_motion(scene);
+  const Motion motion = scene.motion.prepared->view;
+  for (const std::uint32_t i : {0u, 1u}) scene.instances[i].to_world = motion.to_world(i, time);
+  const Affine camera = pose_at(motion.segments, motion.camera, time);
+  scene.camera.look_from = camera.translation();
+  scene.camera.look_at = camera.point({0, 0, -1});
+  scene.camera.up = camera.vector({0, 1, 0});
+  scene.motion = {};
+  Mesh& folded = scene.meshes[3];
+  for (std::size_t i = 0; i < 4; ++i) {
+    folded.positions[i] += time * (folded.end_positions[i] - folded.positions[i]);
+    folded.normals[i] =
+        normalize(folded.normals[i] + time * (folded.end_normals[i] - folded.normals[i]));
+  }
+  folded.end_positions.clear(), folded.end_normals.clear();
+  return scene;
+}
+
+TEST(MotionImages, AreTheMeanOfScenesThatStandStill) {
+  Options options = motion_options(32, 24, 32, 3);
+  const auto render_moving = [&](std::uint64_t seed) {
+    Options own = options;
+    own.seed = seed;
+    return image_of_motion(moving_room(), own);
+  };
+  const auto render_still = [&](std::uint64_t seed) {
+    TestRandom random(seed);
+    Image sum;
+    for (int i = 0; i < 32; ++i) {
+      Options own = options;
+      own.seed = 1000 * seed + static_cast<std::uint64_t>(i), own.spp = 1;
+      const Image one =
+          image_of_motion(room_at((static_cast<float>(i) + random.unit()) / 32.0f), own);
+      if (sum.rgb.empty()) sum = {one.width, one.height, std::vector<float>(one.rgb.size())};
+      for (std::size_t k = 0; k < one.rgb.size(); ++k) sum.rgb[k] += one.rgb[k] / 32.0f;
+    }
+    return sum;
+  };
+  const auto moving = region_means(render_moving, 20);
+  expect_same_means(moving, region_means(render_still, 20), "static renders");
+  // Lights that move are found by sampling them and by hitting them: both alone are right.
+  options.nee = false, options.spp = 256;
+  expect_same_means(moving, region_means(render_moving, 20), "without light sampling");
+  options.nee = true, options.spp = 64, options.mis = MisHeuristic::balance;
+  options.light_selection = LightSelection::uniform;
+  expect_same_means(moving, region_means(render_moving, 20), "balance heuristic");
+}
+
+TEST(MotionImages, OfWhiteThingsInAWhiteSkyAreWhite) {
+  SceneData scene = moving_room();
+  for (MaterialDescription& material : scene.materials) material = make_diffuse(Color(1.0f));
+  scene.sky.nadir = scene.sky.zenith = Color(1.0f);
+  const Image image = image_of_motion(scene, motion_options(24, 18, 16, 200));
+  for (const float value : image.rgb) EXPECT_NEAR(value, 1.0f, 1e-3f);
+}
+
+}  // namespace
+}  // namespace pt

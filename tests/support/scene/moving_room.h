@@ -1,0 +1,56 @@
+// Small scenes that move.
+#pragma once
+
+#include "make_render.h"
+
+namespace pt {
+
+inline DeviceInfo cpu_of_motion() { return choose_device({DeviceChoice::Kind::cpu, 0}); }
+
+inline Options motion_options(int width, int height, int spp, int max_depth = 1) {
+  Options options;
+  options.width = width, options.height = height, options.spp = spp, options.max_depth = max_depth;
+  options.filter = {FilterKind::box, 0.5f};
+  return options;
+}
+
+inline Mesh square_of(float x0, float x1, float y0, float y1, float z, std::uint32_t material,
+                      std::uint32_t group = 0) {
+  Mesh mesh;
+  mesh.positions = {{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}};
+  mesh.triangles = {{{0, 1, 2}}, {{0, 2, 3}}};
+  mesh.material = material, mesh.group = group;
+  return mesh;
+}
+
+/// A floor, something turning over it, and a lamp that moves beside others.
+inline SceneData moving_room() {
+  SceneData scene;
+  scene.name = "moving room";
+  scene.camera.look_from = {0, 3, 6}, scene.camera.look_at = {0, 0.5f, 0};
+  scene.sky.nadir = scene.sky.zenith = Color(0.1f);
+  const std::uint32_t grey = scene.add_material(make_diffuse({0.7f, 0.6f, 0.5f}));
+  const std::uint32_t glow = scene.add_material(make_diffuse(Color(0.0f), {9, 8, 7}));
+  Mesh floor = square_of(-4, 4, -4, 4, 0, grey);
+  for (Vec3& p : floor.positions) p = {p.x, 0, -p.y};
+  Mesh folded = square_of(-2, -1, 0.1f, 1, 1, grey);  // deforms, with its normals
+  folded.normals = std::vector<Vec3>(4, Vec3(0, 0, 1));
+  folded.end_positions = {{-2, 0.1f, 1}, {-0.5f, 0.1f, 1}, {-1, 1.5f, 2}, {-2, 1, 0}};
+  folded.end_normals = {{0, 0, 1}, {0.6f, 0, 0.8f}, {0, -0.6f, 0.8f}, {0, 0, 1}};
+  scene.meshes = {floor, square_of(-0.5f, 0.5f, -0.5f, 0.5f, 0, grey, 1),
+                  square_of(-0.4f, 0.4f, -0.3f, 0.3f, 0, glow, 2), folded};
+  const Affine down = translate({-1, 2, 0}) * rotate({1, 0, 0}, 90);
+  const Affine stand = translate({0.5f, 0.6f, 0.5f});
+  scene.instances = {{1, stand}, {2, down}, {2, translate({1.5f, 1, -1}) * rotate({1, 0, 0}, 60)}};
+  scene.motion.instances = {
+      {0, {{0.0f, stand}, {1.0f, stand * rotate({0, 1, 0.3f}, 140)}}},
+      {1,
+       {{0.0f, down},
+        {0.5f, translate({0, 1.5f, 0.5f}) * rotate({1, 0, 0}, 90) * scale({2, 1, 1})},
+        {1.0f, translate({1, 2, 1}) * rotate({1, 0.3f, 0}, 130)}}}};
+  const Affine camera = translate({0, 3, 6}) * rotate({1, 0, 0}, -22.6199f);
+  scene.motion.camera = {{0.0f, camera}, {1.0f, translate({0.2f, 0.1f, 0}) * camera}};
+  return scene;
+}
+
+}  // namespace pt
