@@ -24,8 +24,14 @@ inline SceneData scene_of(const KernelRow& row, Lighting light) {
   if (row.extras == Extras::with_media) return filled_glasses();
   if (row.extras == Extras::with_sparse)
     return make_cloud_scene({64, 10, 0.9f, true}, VolumeStorage::sparse);
-  SceneData scene = built_in(
-      row.geometry == Geometry::mixed && row.extras == Extras::plain ? "instances:20" : "boxes");
+  const bool moves = row.extras == Extras::with_motion;
+  const bool repeats = moves || (row.geometry == Geometry::mixed && row.extras == Extras::plain);
+  SceneData scene = built_in(repeats ? "instances:20" : "boxes");
+  if (moves) {
+    scene.name += ", moving";
+    const Affine& begin = scene.instances[0].to_world;
+    scene.motion.instances = {{0, {{0.0f, begin}, {1.0f, translate({1, 0, 0}) * begin}}}};
+  }
   if (row.extras == Extras::with_masks) {
     scene.name += ", masked";
     scene.materials[0].opacity.offset = 0.5f;
@@ -120,7 +126,8 @@ inline void render_by_each_kernel(bool on_cuda) {
     EXPECT_TRUE(need.scene.geometry == scene.traits.geometry &&
                 need.scene.lighting == scene.traits.lighting &&
                 need.scene.has_masks == scene.traits.has_masks &&
-                need.scene.has_media == scene.traits.has_media);
+                need.scene.has_media == scene.traits.has_media &&
+                need.scene.has_motion == scene.traits.has_motion);
     EXPECT_TRUE(need.scene.geometry != row.geometry || serves(row, need));
     const Rendered rendered = take_image(*make_renderer(options, scene, device));
     expect_plausible(rendered, options);
