@@ -5,11 +5,13 @@
 #include <numeric>
 
 #include "accel/tree_kinds.h"
+#include "app/render/make_renderer.h"
 #include "common/error/error.h"
 #include "common/scene/prepare/prepare_steps.h"
 #include "common/transport/shutter_time.h"
 #include "scene/moving_room.h"
 #include "statistics.h"
+#include "temp_folder.h"
 
 namespace pt {
 namespace {
@@ -370,6 +372,40 @@ TEST(Motion, RefusesKeysThatAreNone) {
   expect_refused({{0.0f, {}}, {1.0f, scale({1, -1, 1})}}, "key 1 of its motion mirrors");
   expect_refused({{0.0f, {}}, {1.0f, translate({1, 0, 0})}},
                  "the shutter opens at 1 s and closes at 1 s", {1.0f, 1.0f});
+}
+
+TEST(Motion, WhatCannotBeBlurredIsShownWhereItBegins) {
+  const TempFolder folder;
+  const std::string path = folder.file("moving.pbrt");
+  write_text(path, R"(
+Camera "perspective"
+Film "rgb" "integer xresolution" 8 "integer yresolution" 8
+WorldBegin
+AttributeBegin
+ActiveTransform EndTime
+Translate 1 0 0
+ActiveTransform All
+Shape "trianglemesh" "point3 P" [0 0 5 1 0 5 0 1 5] "integer indices" [0 1 2]
+AttributeEnd
+)");
+  std::vector<std::string> warnings;
+  const auto load = [&](const std::function<void(Options&)>& set = {}) {
+    Options options;
+    options.scene = path, options.device = {DeviceChoice::Kind::cpu, 0};
+    if (set) set(options);
+    warnings.clear();
+    return load_scene(options, cpu_of_motion(),
+                      [&](const std::string& text) { warnings.push_back(text); });
+  };
+  EXPECT_TRUE(load().moves());
+  EXPECT_TRUE(warnings.empty());
+  const auto with_chains = [](Options& o) { o.integrator = IntegratorKind::mlt; };
+  const SceneData still = load(with_chains);
+  EXPECT_FALSE(still.moves());
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("--integrator mlt knows no motion blur"), std::string::npos);
+  EXPECT_EQ(still.instances.at(0).to_world.translation(), Vec3(0.0f));
+  EXPECT_THROW(load([&](Options& o) { with_chains(o), o.strict = true; }), Error);
 }
 
 }  // namespace

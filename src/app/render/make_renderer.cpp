@@ -8,6 +8,7 @@
 #include "app/terminal/warning_limit.h"
 #include "common/device/cpu/cpu_renderer.h"
 #include "common/error/error.h"
+#include "common/plan/execution_plan.h"
 #include "common/render/film_renderer.h"
 #include "common/render/memory_share.h"
 #include "common/scene/builtin/builtin_scenes.h"
@@ -35,10 +36,25 @@ bool is_scene_file(const std::string& scene) {
   return !built_in && scene.find_first_of("./") != std::string::npos;
 }
 
+/// What cannot be blurred is rendered as where its motion begins, which is said.
+void hold_still_if_needed(SceneData& scene, const Options& options, const DeviceInfo& device,
+                          const Warn& warn) {
+  if (!scene.moves()) return;
+  SceneData resolved = scene;
+  resolve_scene(resolved, options);
+  const std::string why = motion_obstacle(options, resolved.properties, device.properties.is_cuda);
+  if (why.empty()) return;
+  const std::string what =
+      fmt::format("scene '{}' moves while the shutter is open: {}", scene.name, why);
+  if (options.strict) throw Error(what);
+  if (warn) warn(what + ". Rendered without motion, as where it begins");
+  scene.motion = {};
+  for (Mesh& mesh : scene.meshes) mesh.end_positions.clear(), mesh.end_normals.clear();
+}
+
 }  // namespace
 
-SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& device,
-                     const Warn& warn) {
+SceneData load_scene(const Options& options, const DeviceInfo& device, const Warn& warn) {
   if (is_scene_file(options.scene)) {
     const SceneFiles files;
     WarningLimit limit(warn);
@@ -52,6 +68,7 @@ SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& 
                                                       options.time,
                                                       options.shutter,
                                                       options.animation});
+    hold_still_if_needed(scene, options, device, limit.function());
     scene.source_hash = files.hash(std::filesystem::path(options.scene).parent_path());
     for (const auto& path : files.paths()) scene.source_files.push_back(path.string());
     return scene;

@@ -34,6 +34,9 @@ struct ExecutionPlan : ImageSettings, ExecutionSettings {
   std::string calibration;           ///< whose numbers decided (PlanConstants); empty: none
 };
 
+/// Why what moves in a scene is not blurred, and what would be; empty: it is.
+std::string motion_obstacle(const Options& options, const SceneProperties& scene, bool on_cuda);
+
 /// Made before the scene's acceleration structure is built; for a scene that has one
 /// (SceneProperties::structure) that one is kept. Throws Error where the scene or the device cannot
 /// have what the options ask for.

@@ -251,23 +251,27 @@ void check_options_for_scene(const Options& options, const SceneProperties& scen
   }
 }
 
-void check_motion(const Options& o, const SceneProperties& scene, const DeviceProperties& device) {
-  if (!scene.has_motion) return;
-  const auto refuse = [&](const char* what, const char* expected) {
-    throw Error(fmt::format("scene '{}' moves while the shutter is open: {}; expected {}",
-                            scene.name, what, expected));
-  };
-  if (device.is_cuda) refuse("CUDA has no kernels for motion blur", "--device cpu");
+std::string motion_obstacle(const Options& o, const SceneProperties& scene, bool on_cuda) {
+  if (!scene.has_motion) return "";
+  if (on_cuda) return "CUDA has no kernels for motion blur; expected --device cpu";
   if (o.integrator == IntegratorKind::mlt)
-    refuse("--integrator mlt knows no motion blur", "--integrator path");
+    return "--integrator mlt knows no motion blur; expected --integrator path";
   if (scene.has_media)
-    refuse("motion blur knows no media and no thin glass", "a scene without them");
+    return "motion blur knows no media and no thin glass; expected a scene without them";
   if (scene.has_masks)
-    refuse("motion blur knows no masks, far planes or hidden emitters", "a scene without them");
+    return "motion blur knows no masks, far planes or hidden emitters; expected a scene without "
+           "them";
   if (scene.has_deforming_emitters)
-    refuse("meshes that deform cannot emit", "meshes that emit in instances that move");
+    return "meshes that deform cannot emit; expected meshes that emit in instances that move";
   if (scene.has_moving_emitters && o.light_selection == LightSelection::tree)
-    refuse("--light-selection tree knows no lights that move", "power or uniform");
+    return "--light-selection tree knows no lights that move; expected power or uniform";
+  return "";
+}
+
+void check_motion(const Options& o, const SceneProperties& scene, const DeviceProperties& device) {
+  const std::string why = motion_obstacle(o, scene, device.is_cuda);
+  if (!why.empty())
+    throw Error(fmt::format("scene '{}' moves while the shutter is open: {}", scene.name, why));
 }
 
 void check_optix(const Options& o, const SceneProperties& scene, const DeviceProperties& device,

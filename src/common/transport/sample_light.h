@@ -55,10 +55,10 @@ PT_HD IncidentLight sample_listed_light(const Scene& scene, const Light& light, 
 }
 
 /// A light of the list; where it moves, a triangle, as it lies at `time`.
-template <class Traits>
+template <bool has_motion>
 PT_HD Light light_at(const Scene& scene, std::uint32_t index, float time) {
   const Light light = load_wide(&scene.light_selector.lights[index]);
-  if constexpr (Traits::has_motion) {
+  if constexpr (has_motion) {
     const std::uint32_t instance = scene.motion->instance_of(index);
     if (instance != Motion::none) {
       auto triangle = light.as<TriangleLight>();
@@ -73,7 +73,7 @@ PT_HD Light light_at(const Scene& scene, std::uint32_t index, float time) {
 }
 
 /// Any light (Lighting::full), chosen by the selector.
-template <class Traits>
+template <bool has_motion>
 PT_HD IncidentLight sample_selected_light(const Scene& scene, const Vec3& from, Receiver receiver,
                                           const Vec4& u, float time) {
   const LightChoice choice = scene.light_selector.sample(from, receiver, u.z, u.w);
@@ -82,7 +82,7 @@ PT_HD IncidentLight sample_selected_light(const Scene& scene, const Vec3& from, 
     return {s.wi, beyond_scene * s.wi, s.radiance, choice.pmf * s.pdf};
   }
   if (choice.light == no_light) return {};
-  const Light light = light_at<Traits>(scene, choice.light, time);
+  const Light light = light_at<has_motion>(scene, choice.light, time);
   IncidentLight incident = sample_listed_light(scene, light, from, u.x, u.y);
   incident.pdf *= choice.pmf;
   return incident;
@@ -92,7 +92,7 @@ template <class Traits>
 PT_HD IncidentLight sample_light(const Scene& scene, const Vec3& from, Receiver receiver,
                                  const Vec4& u, float time = 0.0f) {
   if constexpr (Traits::lighting == Lighting::emitters) return sample_emitter(scene, from, u);
-  return sample_selected_light<Traits>(scene, from, receiver, u, time);
+  return sample_selected_light<Traits::has_motion>(scene, from, receiver, u, time);
 }
 
 /// LightSelector::pmf, not inlined: few paths hit an emitter, and it is as long as sample().
@@ -121,7 +121,8 @@ PT_HD float light_pdf(const Scene& scene, const Ray& ray, Receiver receiver, con
         is_placed<Traits>(scene) ? scene.triangles.instances[hit.instance].index : 0;
     const std::uint32_t light_index = scene.light_map.of_triangle(hit_triangle.id, instance);
     // As it was sampled: in the world, relative to its own first corner.
-    const auto light = light_at<Traits>(scene, light_index, time).template as<TriangleLight>();
+    const auto light =
+        light_at<Traits::has_motion>(scene, light_index, time).template as<TriangleLight>();
     return light_pmf_noinline(selector, ray.origin, receiver, light_index) *
            TriangleSampler(light.vertex - ray.origin, light.edge1, light.edge2)
                .pdf(ray.direction, hit.t);
