@@ -381,6 +381,7 @@ TEST(Motion, WhatCannotBeBlurredIsShownWhereItBegins) {
 Camera "perspective"
 Film "rgb" "integer xresolution" 8 "integer yresolution" 8
 WorldBegin
+LightSource "infinite"
 AttributeBegin
 ActiveTransform EndTime
 Translate 1 0 0

@@ -24,6 +24,11 @@ TEST(Dispatch, EveryKindOfSceneFindsItself) {
   });
 }
 
+// A GPU's kernels are compiled for a structure.
+using GpuStages = KernelSelection<true, SamplerSource, SceneMemory::global, KernelBody::stages>;
+static_assert(GpuStages::has({Accel::cwbvh, Geometry::triangles, Lighting::full}));
+static_assert(!GpuStages::has({Accel::any, Geometry::triangles, Lighting::full}));
+
 TEST(Dispatch, EveryRowOfTheTableHasAKernel) {
   int scenes = 0;
   for (const KernelRow& row : kernel_table) {

@@ -34,7 +34,7 @@ constexpr SceneTraits kernel_traits(bool on_cuda, SceneTraits scene) {
 template <class Has>
 constexpr bool renders_some(bool on_cuda, const SceneTraits& kernel, Has&& has) {
   if (kernel_traits(on_cuda, kernel) != kernel) return false;
-  if (kernel.accel != Accel::any) return has(kernel);
+  if (on_cuda || kernel.accel != Accel::any) return has(kernel);
   SceneTraits scene = kernel;
   for (int i = 0; i < static_cast<int>(Accel::any); ++i) {
     scene.accel = Accel{i};
