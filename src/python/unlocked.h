@@ -23,8 +23,8 @@ struct WorkState {
 };
 
 /// Releases the interpreter's lock for its lifetime. Python ends a thread that asks for the lock of
-/// an interpreter that is ending, wherever that thread is: std::terminate() in a destructor. So from
-/// the beginning of its end no thread asks for the lock: it stays here for ever, and the
+/// an interpreter that is ending, wherever that thread is: std::terminate() in a destructor. So
+/// from the beginning of its end no thread asks for the lock: it stays here for ever, and the
 /// interpreter waits until all threads have done what they do without the lock (at most 10 s).
 class Unlocked {
  public:

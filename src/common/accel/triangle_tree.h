@@ -67,7 +67,7 @@ struct TriangleTree : TreeNodes<NodesPointer> {
   std::uint32_t triangle_count = 0;  ///< slots
   std::uint32_t instance_count = 0;  ///< 0: the triangles lie in world space
   std::uint32_t root = 0;
-  Accel accel = Accel::brute;  ///< set on the CPU, for code that is compiled for any
+  Accel accel = Accel::brute;          ///< set on the CPU, for code that is compiled for any
   const EmbreeTree* embree = nullptr;  ///< on the CPU, with --accel embree
 };
 
