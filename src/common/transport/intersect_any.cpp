@@ -11,26 +11,20 @@ template <Accel accel, bool instanced, bool has_masks, bool has_motion>
 using Rays = Traits<accel, instanced ? Geometry::mixed : Geometry::triangles, Lighting::full,
                     has_masks, false, false, has_motion>;
 
-template <class Traits>
-struct Closest {
-  using Result = Hit;
-  static Hit trace(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key,
-                   float time) {
-    return closest_triangle<Traits>(scene, ray, t_max, ray_key, time);
-  }
-};
-
-template <class Traits>
-struct Any {
-  using Result = bool;
-  static bool trace(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key,
-                    float time) {
-    return any_triangle<Traits>(scene, ray, t_max, ray_key, time);
-  }
-};
-
 template <class Result>
 using Trace = Result (*)(const Scene&, const Ray&, float, std::uint32_t, float);
+
+struct Closest {
+  using Result = Hit;
+  template <class Traits>
+  static constexpr Trace<Hit> trace = closest_triangle<Traits>;
+};
+
+struct Any {
+  using Result = bool;
+  template <class Traits>
+  static constexpr Trace<bool> trace = any_triangle<Traits>;
+};
 
 /// Whether plans have kernels for it (plan/kernels.h).
 constexpr bool is_traced(Accel accel, bool has_masks, bool has_motion) {
@@ -40,19 +34,17 @@ constexpr bool is_traced(Accel accel, bool has_masks, bool has_motion) {
 }
 
 /// Null where it is not traced.
-template <template <class> class Query, Accel accel, bool instanced, bool has_masks,
-          bool has_motion>
-constexpr auto trace_of() {
-  using Kind = Query<Rays<accel, instanced, has_masks, has_motion>>;
+template <class Query, Accel accel, bool instanced, bool has_masks, bool has_motion>
+constexpr Trace<typename Query::Result> trace_of() {
   if constexpr (accel == Accel::any || !is_traced(accel, has_masks, has_motion)) {
-    return Trace<typename Kind::Result>{nullptr};
+    return nullptr;
   } else {
-    return &Kind::trace;
+    return Query::template trace<Rays<accel, instanced, has_masks, has_motion>>;
   }
 }
 
 /// By structure; a function for each, so that its loop is optimised alone.
-template <template <class> class Query, bool instanced, bool... extras>
+template <class Query, bool instanced, bool... extras>
 constexpr auto traces_of() {
   return []<int... i>(std::integer_sequence<int, i...>) {
     return std::array{trace_of<Query, Accel{i}, instanced, extras...>()...};
@@ -60,7 +52,7 @@ constexpr auto traces_of() {
   (std::make_integer_sequence<int, accel_count>{});
 }
 
-template <template <class> class Query, bool... extras>
+template <class Query, bool... extras>
 auto trace_any(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key, float time) {
   static constexpr auto plain = traces_of<Query, false, extras...>();
   static constexpr auto instanced = traces_of<Query, true, extras...>();
