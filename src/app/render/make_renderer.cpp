@@ -48,8 +48,7 @@ void hold_still_if_needed(SceneData& scene, const Options& options, const Device
       fmt::format("scene '{}' moves while the shutter is open: {}", scene.name, why);
   if (options.strict) throw Error(what);
   if (warn) warn(what + ". Rendered without motion, as where it begins");
-  scene.motion = {};
-  for (Mesh& mesh : scene.meshes) mesh.end_positions.clear(), mesh.end_normals.clear();
+  hold_still(scene);
 }
 
 }  // namespace

@@ -126,6 +126,11 @@ bool move_camera(SceneData& scene, const CameraParameters& camera, const Options
   return scene.camera.orthographic == was_orthographic && is_limited(scene.camera) == was_limited;
 }
 
+void hold_still(SceneData& scene) {
+  scene.motion = {};
+  for (Mesh& mesh : scene.meshes) mesh.end_positions.clear(), mesh.end_normals.clear();
+}
+
 void resolve_scene(SceneData& scene, const Options& options) {
   if (scene.primitive_count() == 0 && scene.triangle_count() == 0) {
     throw Error(fmt::format("scene '{}' is empty: expected at least one primitive", scene.name));

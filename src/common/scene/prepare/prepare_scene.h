@@ -7,6 +7,9 @@
 
 namespace pt {
 
+/// Leaves everything where its motion begins; before resolve_scene.
+void hold_still(SceneData& scene);
+
 /// Applies what the options say of the scene (camera, filter, multiple scattering), packs materials
 /// and media, and fills in SceneData::properties, on which a plan depends. Throws Error for an
 /// empty scene and for a camera, a medium or a material that cannot be rendered.

@@ -101,8 +101,7 @@ using GlimpseKinds = TypeList<Traits<Accel::bvh2, Geometry::triangles, Lighting:
 }  // namespace
 
 LightEstimate::LightEstimate(const SceneData& scene) : scene_(scene) {
-  scene_.motion = {};  // as where everything begins
-  for (Mesh& mesh : scene_.meshes) mesh.end_positions.clear(), mesh.end_normals.clear();
+  hold_still(scene_);
   prepare_scene(scene_, options_of_estimate());
 }
 
