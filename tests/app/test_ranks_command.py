@@ -9,12 +9,15 @@ import resource
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "mpi"))
+from mpi_launcher import is_open_mpi, loses_exit_codes  # noqa: E402
 PTEXP = Path(os.environ.get("PTEXP", ROOT / "build" / "release" / "src" / "ptexp")).resolve()
 TIMEOUT_S = 300
 SMALL = ["--device", "cpu", "--threads", 1, "--width", 64, "--height", 48, "--max-depth", 6]
@@ -44,13 +47,6 @@ def launcher():
     return found, f"no launcher of {name}"
 
 
-def loses_exit_codes():
-    """MPICH's launcher before 4.1 may return 0 after a signal that it has passed on: it takes ranks
-    that end then for killed by itself (https://github.com/pmodels/mpich/pull/5930)."""
-    version = re.match(r"MPICH\D*(\d+)\.(\d+)", library())
-    return version is not None and tuple(map(int, version.groups())) < (4, 1)
-
-
 class Ranks(unittest.TestCase):
     def setUp(self):
         self.mpirun, why = launcher()
@@ -63,8 +59,7 @@ class Ranks(unittest.TestCase):
                             "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "PTEXP_MPI_TIMEOUT": "20"}
 
     def command(self, ranks, arguments):
-        oversubscribe = ["--oversubscribe"] if "openmpi" in Path(self.mpirun).resolve().name or \
-            "orterun" in Path(self.mpirun).resolve().name else []
+        oversubscribe = ["--oversubscribe"] if is_open_mpi(self.mpirun) else []
         return [self.mpirun, *oversubscribe, "-n", str(ranks), str(PTEXP), *map(str, arguments)]
 
     def run_ranks(self, ranks, *arguments):
@@ -170,7 +165,7 @@ class Ranks(unittest.TestCase):
         process.send_signal(signal.SIGUSR1)  # mpirun passes it on
         _, said = process.communicate(timeout=TIMEOUT_S)
         self.assertIn("ptexp: interrupted", said)
-        if process.returncode != 0 or not loses_exit_codes():
+        if process.returncode != 0 or not loses_exit_codes(self.mpirun):
             self.assertEqual(process.returncode, 128 + signal.SIGUSR1, said)
         run = self.run_ranks(2, "resume", "c.exr", "-o", "b.exr")
         self.assertEqual(run.returncode, 0, run.stderr)
