@@ -73,6 +73,7 @@ void shade_blocks_cpu(const ShadeSurface<Traits, branching, Source>& stage, cons
   constexpr bool prefetches = Traits::lighting == Lighting::full;  // its scenes may be large
   constexpr std::uint32_t attributes_ahead = 6, texels_ahead = 3;  // slots
   const StageContext<Source>& c = stage.context;
+  using SharedStage = ShadeSurface<SharedShadingTraits<Traits>, branching, DrawnSource>;
   static const bool fast = has_avx2();
   for_each_range<Stage>(queues, [&](std::uint32_t begin, std::uint32_t end, auto&& send) {
     DrawnBlock scatter{}, light{};
@@ -101,7 +102,8 @@ void shade_blocks_cpu(const ShadeSurface<Traits, branching, Source>& stage, cons
             ask_for_texels(i + texels_ahead);
             drawn.context.source.index = i;
             const std::uint32_t slot = slots[i];
-            send(slot, fast ? shade_slot(drawn, scene, slot) : drawn(scene, slot, 0));
+            send(slot, fast ? shade_slot(drawn, scene, slot)
+                            : SharedStage{drawn.context}(scene, slot, 0));
           }
         });
   });

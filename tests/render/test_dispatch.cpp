@@ -21,6 +21,9 @@ TEST(Dispatch, EveryKindOfSceneFindsItself) {
       EXPECT_TRUE(found.value() == kind.value());
     });
     EXPECT_EQ(calls, 1);
+    // The paper's scenes have kernels for their structures alone.
+    constexpr SceneTraits traits = decltype(kind)::value();
+    EXPECT_EQ(traits.accel == Accel::any, traits.lighting == Lighting::full);
   });
 }
 

@@ -111,8 +111,8 @@ class RayPaths {
       const Hit hit = intersect_closest<Traits>(scene_, ray);
       ++path.rays;
       if (hit.is_miss()) return no_ray;
-      const Scattering next = surface_scattering<ShadingTraits<Traits>>(
-          scene_, ray, hit, path, settings, eager_shading<Traits>(random, path));
+      const Scattering next = scatter_at_surface<Traits>(scene_, ray, hit, path, settings,
+                                                         eager_shading<Traits>(random, path));
       if (!next.alive) return no_ray;
       ray = next.ray;
     }

@@ -33,12 +33,10 @@ constexpr SceneTraits kernel_traits(bool on_cuda, SceneTraits scene) {
 /// Whether a kernel of these traits renders one of the scenes for which `has` says so.
 template <class Has>
 constexpr bool renders_some(bool on_cuda, const SceneTraits& kernel, Has&& has) {
-  if (kernel_traits(on_cuda, kernel) != kernel) return false;
-  if (on_cuda || kernel.accel != Accel::any) return has(kernel);
   SceneTraits scene = kernel;
   for (int i = 0; i < static_cast<int>(Accel::any); ++i) {
     scene.accel = Accel{i};
-    if (has(scene)) return true;
+    if (kernel_traits(on_cuda, scene) == kernel && has(scene)) return true;
   }
   return false;
 }

@@ -54,7 +54,7 @@ PT_HD Hit closest_primitive_in_view(const Scene& scene, const Ray& ray, std::uin
 }
 
 // In the structure that the scene names, on the CPU alone: compiled once, for kernels of any
-// structure (intersect_any.cpp).
+// structure (any_structure.cpp).
 template <bool has_masks, bool has_motion>
 Hit closest_triangle_any(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key,
                          float time);

@@ -58,7 +58,7 @@ template <class Traits, class Policy, class Sink>
 PT_HD_IN_KERNEL void shade_surface(const Scene& scene, const Ray& ray, const Hit& hit,
                                    PathState& path, const PathSettings& settings,
                                    const Policy& policy, Sink& sink) {
-  follow_scattering<Traits>(surface_scattering<Traits>(scene, ray, hit, path, settings, policy),
+  follow_scattering<Traits>(scatter_at_surface<Traits>(scene, ray, hit, path, settings, policy),
                             path, sink);
 }
 
@@ -95,7 +95,7 @@ PT_HD_IN_KERNEL void shade_without_branches(const Scene& scene, const Ray& ray, 
   const std::uint16_t shadow_rays = path.shadow_rays;
   const Color sky = miss_radiance<Traits::lighting>(scene, ray.direction, path, settings.mis);
   Scattering result =
-      surface_scattering<Traits>(scene, ray, miss ? Hit{1.0f, 0} : hit, path, settings, policy);
+      scatter_at_surface<Traits>(scene, ray, miss ? Hit{1.0f, 0} : hit, path, settings, policy);
   result.alive = result.alive && !miss;
   result.emitted = miss ? sky : result.emitted;
   result.shadow.radiance = miss ? Color(0.0f) : result.shadow.radiance;

@@ -270,4 +270,21 @@ PT_HD_IN_KERNEL Scattering surface_scattering(const Scene& scene, const Ray& ray
   return result;
 }
 
+/// As surface_scattering, on the CPU alone: compiled once (any_structure.cpp).
+template <class Shading>
+Scattering surface_scattering_any(const Scene& scene, const Ray& ray, const Hit& hit,
+                                  PathState& path, const PathSettings& settings,
+                                  const EagerShading& policy);
+
+/// surface_scattering, or where kernels are for any structure the one that they share.
+template <class Traits, class Policy>
+PT_HD_IN_KERNEL Scattering scatter_at_surface(const Scene& scene, const Ray& ray, const Hit& hit,
+                                              PathState& path, const PathSettings& settings,
+                                              const Policy& policy) {
+  if constexpr (Traits::accel == Accel::any)
+    return surface_scattering_any<ShadingTraits<Traits>>(scene, ray, hit, path, settings, policy);
+  else
+    return surface_scattering<Traits>(scene, ray, hit, path, settings, policy);
+}
+
 }  // namespace pt

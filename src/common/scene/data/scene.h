@@ -97,6 +97,13 @@ template <class T>
 using ShadingTraits =
     Traits<Accel::brute, T::geometry, T::lighting, false, T::has_media, false, T::has_motion>;
 
+/// As ShadingTraits, for shading that all kernels of such scenes share
+/// (transport/any_structure.cpp).
+template <class T>
+using SharedShadingTraits =
+    Traits<T::lighting == Lighting::full ? Accel::any : Accel::brute, T::geometry, T::lighting,
+           false, T::has_media, false, T::has_motion>;
+
 /// The same at collisions in media, where grids are looked up.
 template <class T>
 using CollisionTraits =

@@ -88,15 +88,16 @@ void trace(const Scene& scene, std::vector<PixelSums>& pixels) {
 }
 
 template <class... Kinds>
-void trace_any(TypeList<Kinds...>, const SceneTraits& traits, const Scene& scene,
+void trace_any(TypeList<Kinds...>, SceneTraits traits, const Scene& scene,
                std::vector<PixelSums>& pixels) {
+  traits.accel = Accel::any;
   ((Kinds::value() == traits ? trace<Kinds>(scene, pixels) : void()), ...);
 }
 
-using GlimpseKinds = TypeList<Traits<Accel::bvh2, Geometry::triangles, Lighting::full>,
-                              Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
-                              Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
-                              Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true, true>>;
+using GlimpseKinds = TypeList<Traits<Accel::any, Geometry::triangles, Lighting::full>,
+                              Traits<Accel::any, Geometry::mixed, Lighting::full>,
+                              Traits<Accel::any, Geometry::mixed, Lighting::full, true>,
+                              Traits<Accel::any, Geometry::mixed, Lighting::full, true, true>>;
 
 }  // namespace
 

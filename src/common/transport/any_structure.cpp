@@ -1,7 +1,9 @@
+// What a CPU's kernels for any structure share: tracing in the one that the scene names, and
+// shading.
 #include <array>
 #include <utility>
 
-#include "common/transport/intersect.h"
+#include "common/transport/shade_surface.h"
 
 namespace pt {
 namespace {
@@ -82,6 +84,24 @@ bool any_triangle_any(const Scene& scene, const Ray& ray, float t_max, std::uint
 PT_ANY(false, false)
 PT_ANY(true, false)
 PT_ANY(false, true)
+#undef PT_ANY
+
+template <class Shading>
+Scattering surface_scattering_any(const Scene& scene, const Ray& ray, const Hit& hit,
+                                  PathState& path, const PathSettings& settings,
+                                  const EagerShading& policy) {
+  return surface_scattering<Shading>(scene, ray, hit, path, settings, policy);
+}
+
+#define PT_ANY(geometry, ...)                                                          \
+  template Scattering                                                                  \
+  surface_scattering_any<Traits<Accel::brute, geometry, Lighting::full, __VA_ARGS__>>( \
+      const Scene&, const Ray&, const Hit&, PathState&, const PathSettings&, const EagerShading&);
+PT_ANY(Geometry::triangles, false)
+PT_ANY(Geometry::triangles, false, true)
+PT_ANY(Geometry::mixed, false)
+PT_ANY(Geometry::mixed, false, true)
+PT_ANY(Geometry::mixed, false, false, false, true)
 #undef PT_ANY
 
 }  // namespace pt
