@@ -71,10 +71,11 @@ void shade_blocks_cpu(const ShadeSurface<Traits, branching, Source>& stage, cons
                       const StageQueues& queues) {
   using Stage = ShadeSurface<Traits, branching, DrawnSource>;
   constexpr bool prefetches = Traits::lighting == Lighting::full;  // its scenes may be large
+  constexpr bool is_one_function = !Traits::has_motion;            // of which rays take longest
   constexpr std::uint32_t attributes_ahead = 6, texels_ahead = 3;  // slots
   const StageContext<Source>& c = stage.context;
   using SharedStage = ShadeSurface<SharedShadingTraits<Traits>, branching, DrawnSource>;
-  static const bool fast = has_avx2();
+  static const bool fast = is_one_function && has_avx2();
   for_each_range<Stage>(queues, [&](std::uint32_t begin, std::uint32_t end, auto&& send) {
     DrawnBlock scatter{}, light{};
     Stage drawn{
@@ -95,15 +96,19 @@ void shade_blocks_cpu(const ShadeSurface<Traits, branching, Source>& stage, cons
               prefetch_texels(scene, c.pool.load_ray(slots[i]), c.pool.load_hit(slots[i]));
             }
           };
+          const auto shade = [&](std::uint32_t slot) {
+            if constexpr (is_one_function) {
+              if (fast) return shade_slot(drawn, scene, slot);
+            }
+            return SharedStage{drawn.context}(scene, slot, 0);
+          };
           for (std::uint32_t i = 0; i < attributes_ahead; ++i) ask_for_attributes(i);
           for (std::uint32_t i = 0; i < texels_ahead; ++i) ask_for_texels(i);
           for (std::uint32_t i = 0; i < count; ++i) {
             ask_for_attributes(i + attributes_ahead);
             ask_for_texels(i + texels_ahead);
             drawn.context.source.index = i;
-            const std::uint32_t slot = slots[i];
-            send(slot, fast ? shade_slot(drawn, scene, slot)
-                            : SharedStage{drawn.context}(scene, slot, 0));
+            send(slots[i], shade(slots[i]));
           }
         });
   });
