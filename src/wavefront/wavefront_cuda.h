@@ -12,18 +12,18 @@ namespace pt {
 class CudaOptixMemory;
 class OptixTracer;
 
-/// The scenes of a wavefront with this source of random numbers, as Traits; those with media apart,
-/// whose kernels compile beside the others.
-template <class Source, bool has_media>
+/// The scenes of a wavefront with this source of random numbers, as Traits; those with media and
+/// those with motion apart, whose kernels compile beside the others.
+template <class Source, bool has_media, bool has_motion>
 struct WaveKernels {
   static constexpr bool has(const SceneTraits& scene) {
     using enum KernelBody;
-    return scene.has_media == has_media &&
+    return scene.has_media == has_media && scene.has_motion == has_motion &&
            KernelSelection<true, Source, SceneMemory::global, stages, warps, fused>::has(scene);
   }
 };
-template <class Source, bool has_media = false>
-using WaveKinds = TraitsOf<WaveKernels<Source, has_media>>;
+template <class Source, bool has_media = false, bool has_motion = false>
+using WaveKinds = TraitsOf<WaveKernels<Source, has_media, has_motion>>;
 
 class WavefrontCuda : public CudaRenderer {
  public:

@@ -1,4 +1,4 @@
-// Scenes with media.
+// Scenes with media, and scenes that move.
 #include "wavefront/fly_queue.cuh"
 #include "wavefront/wavefront_enqueue.cuh"
 
@@ -19,5 +19,10 @@ using MediaKinds = WaveKinds<SamplerSource, true>;
 
 template void WavefrontCuda::enqueue_wave_of<MediaKinds>(const SamplerContext&, bool);
 template void WavefrontCuda::enqueue_finish_of<MediaKinds>(const SamplerContext&);
+
+using MovingKinds = WaveKinds<SamplerSource, false, true>;
+
+template void WavefrontCuda::enqueue_wave_of<MovingKinds>(const SamplerContext&, bool);
+template void WavefrontCuda::enqueue_finish_of<MovingKinds>(const SamplerContext&);
 
 }  // namespace pt

@@ -11,6 +11,7 @@
 #include "common/scene/edit/scene_parameters.h"
 #include "load/mitsuba_scene.h"
 #include "render_words.h"
+#include "scene/moving_room.h"
 
 namespace {
 
@@ -170,6 +171,33 @@ TEST(CudaSceneEdits, EveryParameterInEachMode) {
 TEST(CudaSceneEdits, EveryParameterWithoutAGraph) {
   if (list_devices().size() < 2) GTEST_SKIP() << "no CUDA device";
   expect_edits_on_cuda({{{"mode", "megakernel"}}, {{"schedule", "host"}, {"mode", "wavefront"}}});
+}
+
+// A lamp that goes out and on, a mesh that deforms and is told to emit, and all else.
+TEST(SceneEdits, OfWhatMoves) {
+  for (const char* mode : {"megakernel", "wavefront"})
+    EXPECT_GE(expect_edits_as_anew(moving_room(), {{"mode", mode}}), 4);
+}
+
+TEST(CudaSceneEdits, OfWhatMoves) {
+  if (list_devices().size() < 2) GTEST_SKIP() << "no CUDA device";
+  for (const char* mode : {"megakernel", "wavefront"})
+    EXPECT_GE(expect_edits_as_anew(moving_room(), {{"mode", mode}, {"device", "cuda"}}), 4);
+}
+
+// The lights before and after have other places in their list.
+TEST(SceneEdits, LightsOfWhatMovesGoOutAndOn) {
+  SceneData scene = moving_room();
+  scene.meshes[0].material = scene.add_material(make_diffuse(Color(0.5f), Color(0.2f)));
+  const RenderCommand command = edit_command({{"spp", "4"}});
+  RenderSession session{SceneData(scene)};
+  render_now(session, command);
+  constexpr SceneChanges changes{.shading = true, .lights = true};
+  for (const float value : {0.0f, 0.3f}) {
+    session.change_scene(
+        changes, [&](SceneData& own) { own.materials.back().emission.radiance = Color(value); });
+    expect_as_anew(session, command);
+  }
 }
 
 TEST(CudaSceneEdits, MaterialsAndLightsKeepTheRenderer) {

@@ -341,19 +341,6 @@ TEST(Motion, RefusesWhatItDoesNotKnow) {
   SceneData masked = moving_room();
   masked.camera.hides_emitters = true;
   expect_refused("knows no masks, far planes or hidden emitters", refusal(masked));
-  SceneProperties properties;
-  properties.name = "x", properties.has_motion = true, properties.triangles = 1;
-  DeviceProperties cuda;
-  cuda.is_cuda = true;
-  try {
-    plan_execution(Options(), properties, cuda);
-    ADD_FAILURE() << "planned on CUDA";
-  } catch (const Error& error) {
-    expect_refused(
-        "scene 'x' moves while the shutter is open: CUDA has no kernels for motion "
-        "blur; expected --device cpu",
-        error.what());
-  }
 }
 
 TEST(Motion, RefusesKeysThatAreNone) {

@@ -60,6 +60,12 @@ SceneProperties mesh_and_sphere() {
   return changed(mesh(), [](SceneProperties& s) { s.spheres = 1; });
 }
 
+SceneProperties moving_mesh() {
+  return changed(mesh(), [](SceneProperties& s) {
+    s.name = "x", s.has_motion = s.has_moving_surfaces = true;
+  });
+}
+
 DeviceProperties gpu(std::size_t shared_kib = 227) {
   DeviceProperties device;
   device.is_cuda = true, device.block_shared_bytes = shared_kib * 1024;
@@ -347,6 +353,31 @@ const std::vector<Row>& rows() {
       {"media in a megakernel of a CPU", mega(), filled_glass(), cpu(), {{"accel", "bvh2"}}},
       {"a cloud on a CPU", {}, filled_glass(true), cpu(), {{"accel", "bvh2"}}},
       {"media without vectors", {}, filled_glass(), cpu(false), {{"accel", "bvh2"}}},
+      {"motion in waves",
+       {},
+       moving_mesh(),
+       gpu(),
+       {{"accel", "bvh2"},
+        {"persistent", "off"},
+        {"stages", "split"},
+        {"schedule", "graph"},
+        {"finish-paths", "32768"}}},
+      {"motion in fused stages that the host launches",
+       {{"stages", "fused"}, {"schedule", "host"}},
+       moving_mesh(),
+       gpu(),
+       {{"accel", "bvh2"}, {"stages", "fused"}, {"schedule", "host"}}},
+      {"motion in a megakernel",
+       mega(),
+       moving_mesh(),
+       gpu(),
+       {{"kernel", "loop"}, {"accel", "bvh2"}}},
+      {"motion of many kinds of BSDFs",
+       {{"mode", "auto"}},
+       changed(moving_mesh(), [](auto& s) { s.bsdf_kinds = five_kinds | bit(kind_of<Metal>); }),
+       gpu(),
+       {{"mode", "wavefront"}, {"accel", "bvh2"}, {"order-surfaces", "on"}}},
+      {"motion on a CPU", {}, moving_mesh(), cpu(), {{"accel", "bvh2"}}},
       {"the host's waves", {{"schedule", "host"}}, mesh(), gpu(), {{"schedule", "host"}}},
       {"few emitters",
        {},
@@ -380,6 +411,36 @@ TEST(ExecutionPlan, IsATable) {
     }
     for (const auto& [option, value] : row.expected) EXPECT_EQ(found[option], value) << option;
   }
+}
+
+TEST(ExecutionPlan, RefusesWhatMotionOnCudaHasNoKernelsFor) {
+  const auto refusal = [](const Choices& settings, const SceneProperties& scene) -> std::string {
+    try {
+      plan_of(settings, scene, gpu());
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string begin = ": no kernel on CUDA renders scene 'x' (triangles, motion) so; ";
+  const std::pair<Choices, std::string> refused[] = {
+      {mega({{"kernel", "sort"}}), "--kernel sort" + begin + "expected --kernel loop"},
+      {mega({{"kernel", "vote"}}), "--kernel vote" + begin + "expected --kernel loop"},
+      {{{"accel", "cwbvh"}}, "--accel cwbvh" + begin + "expected --accel bvh2"},
+      {{{"accel", "brute"}}, "--accel brute" + begin + "expected --accel bvh2"},
+      {{{"branching", "reduced"}},
+       "--branching reduced" + begin + "expected --branching divergent"},
+      {{{"rng", "xorwow"}}, "--rng xorwow" + begin + "expected --rng philox"},
+      {{{"accel", "optix"}}, "--accel optix: OptiX traces what stands still; scene 'x' moves"}};
+  for (const auto& [settings, text] : refused) EXPECT_EQ(refusal(settings, moving_mesh()), text);
+  const SceneProperties masked = changed(moving_mesh(), [](auto& s) { s.has_masks = true; });
+  EXPECT_NE(refusal({}, masked).find("motion blur knows no masks"), std::string::npos);
+  EXPECT_EQ(refusal({{"builder", "hploc"}}, moving_mesh()),
+            "scene 'x' moves while the shutter is open: --builder hploc fits no tree to a motion; "
+            "expected auto, sah, sah-reinsert, sbvh or best");
+  EXPECT_EQ(refusal({{"builder", "hploc"}},
+                    changed(moving_mesh(), [](auto& s) { s.has_moving_surfaces = false; })),
+            "");
 }
 
 // For the measured scenes the mode that was faster (results/log/2026-11-sizes.md).

@@ -29,6 +29,8 @@ void for_each_need(EnumSet<Content> contents, Function&& function) {
                 need.scene = {Accel{accel}, Geometry::spheres_and_quads, light};
                 function(need);
               }
+              need.scene = general_traits(Accel{accel}, contents, false, false, false, true);
+              function(need);
               for (const bool masks : {false, true}) {
                 for (const bool media : {false, true}) {
                   for (const bool sparse : {false, on_cuda && media}) {
@@ -63,8 +65,8 @@ TEST(Kernels, ARefusalNamesAKernelOfTheSameScene) {
             const auto& s = need.scene;
             const Accel accel = accel_of(parse_name<AccelKind>("accel", value));
             if (s.geometry != Geometry::spheres_and_quads)
-              other.scene =
-                  general_traits(accel, need.contents, s.has_masks, s.has_media, s.has_sparse);
+              other.scene = general_traits(accel, need.contents, s.has_masks, s.has_media,
+                                           s.has_sparse, s.has_motion);
             other.scene.accel = accel;
           } else if (option == "--scene-memory") {
             other.memory = parse_name<SceneMemory>("scene-memory", value);

@@ -105,6 +105,10 @@ TEST(OptixPlan, RefusesWhatItCannotTrace) {
   EXPECT_EQ(optix_refusal({{"optix-hits", "built-in"}}, masked),
             "--accel optix: only our programs judge masks; expected --optix-hits custom or "
             "any-hit");
+  SceneProperties moving = scene;
+  moving.has_motion = true;
+  EXPECT_EQ(optix_refusal({}, moving),
+            "--accel optix: OptiX traces what stands still; scene 'room' moves");
   masked.instances = 3;
   EXPECT_NE(optix_refusal({}, masked).find("scene 'room' has no kernel for it"), std::string::npos);
   open.has_media = open.has_open_boundaries = true;

@@ -41,6 +41,16 @@ TreeBuilder builder_of(const Options& options, const SceneProperties& scene,
   return plan_execution(options, scene, device).builder;
 }
 
+// A tree of a GPU is fitted to one place.
+TEST(TreeTimes, WhatMovesHasATreeOfTheHost) {
+  SceneProperties scene = mesh_of(10'000'000);
+  const Options options = image(512, 4);
+  scene.has_motion = true;  // of the camera alone
+  EXPECT_TRUE(is_device_builder(builder_of(options, scene, gpu_beside())));
+  scene.has_moving_surfaces = true;
+  EXPECT_FALSE(is_device_builder(builder_of(options, scene, gpu_beside())));
+}
+
 TEST(TreeTimes, RaysGrowWithPixelsSamplesAndShortPaths) {
   ImageSettings settings;
   settings.spp = 10, settings.max_depth = 1, settings.nee = false;

@@ -31,6 +31,19 @@ TEST(Dispatch, EveryKindOfSceneFindsItself) {
 using GpuStages = KernelSelection<true, SamplerSource, SceneMemory::global, KernelBody::stages>;
 static_assert(GpuStages::has({Accel::cwbvh, Geometry::triangles, Lighting::full}));
 static_assert(!GpuStages::has({Accel::any, Geometry::triangles, Lighting::full}));
+constexpr SceneTraits moving_on_gpu{.accel = Accel::bvh2,
+                                    .geometry = Geometry::mixed,
+                                    .lighting = Lighting::full,
+                                    .has_motion = true};
+static_assert(GpuStages::has(moving_on_gpu));
+static_assert(!GpuStages::has({Accel::cwbvh, Geometry::mixed, Lighting::full, false, false, false,
+                               true}));
+template <KernelBody body>
+using GpuBody = KernelSelection<true, SamplerSource, SceneMemory::global, body>;
+static_assert(GpuBody<KernelBody::loop>::has(moving_on_gpu));
+static_assert(GpuBody<KernelBody::fused>::has(moving_on_gpu));
+static_assert(!GpuBody<KernelBody::warps>::has(moving_on_gpu));
+static_assert(!GpuBody<KernelBody::blocks>::has(moving_on_gpu));
 
 TEST(Dispatch, EveryRowOfTheTableHasAKernel) {
   int scenes = 0;

@@ -31,7 +31,7 @@ struct alignas(16) MotionSegment {
 
 /// At a part `u` in [0, 1] of the segment.
 PT_HD Affine pose_in(const MotionSegment& segment, float u) {
-  const SinCos turn = sincos_2pi(u * segment.turns);
+  const SinCos turn = sincos_2pi(multiply_rounded(u, segment.turns));
   const auto turned = [&](float from, float to) {
     return fused_multiply_add(turn.cos, from, multiply_rounded(turn.sin, to));
   };
@@ -79,7 +79,7 @@ struct Bvh2Node;
 struct Triangle;
 struct CornerAttributes;
 
-/// A view of all that moves in a scene, on the host.
+/// A view of all that moves in a scene.
 struct Motion {
   const MotionSegment* segments = nullptr;
   const MotionTrack* instances = nullptr;  ///< [InstanceRecord::index]

@@ -51,21 +51,22 @@ PT_HD Affine operator*(const Affine& a, const Affine& b) {
   return c;
 }
 
-/// The inverse, computed in double precision; `a` must not be singular.
+/// The inverse, computed in double precision; `a` must not be singular. Has the same bits on every
+/// device: doubles hold the products of a cofactor exactly, so that fusing them changes nothing.
 PT_HD Affine inverse(const Affine& a) {
   const auto at = [&](int i, int j) { return static_cast<double>(a.row[i % 3][j % 3]); };
   const auto cofactor = [&](int i, int j) {
     return at(i + 1, j + 1) * at(i + 2, j + 2) - at(i + 1, j + 2) * at(i + 2, j + 1);
   };
-  const double determinant =
-      at(0, 0) * cofactor(0, 0) + at(0, 1) * cofactor(0, 1) + at(0, 2) * cofactor(0, 2);
+  const auto term = [&](int j) { return multiply_rounded(at(0, j), cofactor(0, j)); };
+  const double determinant = add_rounded(add_rounded(term(0), term(1)), term(2));
   Affine result;
   for (int i = 0; i < 3; ++i) {
     double moved = 0;
     for (int j = 0; j < 3; ++j) {
       const double value = cofactor(j, i) / determinant;
       result.row[i][j] = static_cast<float>(value);
-      moved -= value * static_cast<double>(a.row[j].w);
+      moved = add_rounded(moved, -multiply_rounded(value, static_cast<double>(a.row[j].w)));
     }
     result.row[i].w = static_cast<float>(moved);
   }

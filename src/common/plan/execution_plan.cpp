@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "common/accel/build/build_nodes.h"
+#include "common/accel/build/build_triangle_tree.h"
 #include "common/accel/trace_cpu/ray_block.h"
 #include "common/accel/traverse_triangles.h"
 #include "common/error/error.h"
@@ -176,6 +177,7 @@ class Planner {
     using enum MegakernelKind;
     if (is_specialized()) return {loop, "spheres and quads alone: the paper's loop"};
     if (scene_.spheres > 0) return {loop, "the others trace triangles alone"};
+    if (scene_.has_motion) return {loop, "the others know no motion blur"};
     if (!scene_.has_plain_instances()) return {loop, "the others know no masks among instances"};
     if (has_open_media()) return {loop, "the others know no boundaries without a BSDF"};
     if (o_.work != Work::persistent) return {loop, "--work " + to_string(o_.work)};
@@ -237,7 +239,9 @@ class Planner {
       return decide("builder", to_string(plan_.builder), asked);
     const TreeWork work{double(scene_.triangles + 2 * scene_.quads), double(scene_.tree_groups),
                         expected_rays(rendered_pixels(), o_, c_)};
-    const std::vector<TreeTimes> all = expected_tree_times(work, device_, double(o_.time_limit));
+    std::vector<TreeTimes> all = expected_tree_times(work, device_, double(o_.time_limit));
+    if (scene_.has_moving_surfaces)
+      std::erase_if(all, [](const TreeTimes& t) { return is_device_builder(t.builder); });
     const TreeTimes& first = *std::ranges::min_element(all, {}, &TreeTimes::total_s);
     plan_.builder = first.builder;
     std::string reason = fmt::format("expected {} to build, {} to render", seconds(first.build_s),
@@ -316,7 +320,7 @@ class Planner {
   bool warps_can_persist() const {
     return is_on_gpu(Mode::wavefront) && !is_specialized() &&
            compaction_info(o_.compaction).appends && scene_.spheres == 0 && !has_open_media() &&
-           scene_.has_plain_instances();
+           !scene_.has_motion && scene_.has_plain_instances();
   }
 
   void choose_scene_memory() {

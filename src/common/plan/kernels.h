@@ -128,6 +128,7 @@ inline constexpr KernelRow table[] = {
     {cuda, {loop, stages}, bvh2, mixed, full, with_masks, sampler},
     {cuda, {loop, stages, fused}, bvh2, mixed, full, with_media, sampler},
     {cuda, {loop, stages, fused}, bvh2, mixed, full, with_sparse, sampler},
+    {cuda, {loop, stages, fused}, bvh2, mixed, full, with_motion, sampler},
     {cuda, fused, trees, mixed, full, plain, sampler},
     {cuda, fused, trees, mixed, full, with_masks, sampler},
     {cuda, {vote, blocks, warps}, cwbvh, triangles, full, plain, sampler},

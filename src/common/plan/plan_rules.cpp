@@ -253,7 +253,10 @@ void check_options_for_scene(const Options& options, const SceneProperties& scen
 
 std::string motion_obstacle(const Options& o, const SceneProperties& scene, bool on_cuda) {
   if (!scene.has_motion) return "";
-  if (on_cuda) return "CUDA has no kernels for motion blur; expected --device cpu";
+  if (on_cuda && scene.has_moving_surfaces && is_device_builder(o.builder))
+    return fmt::format(
+        "--builder {} fits no tree to a motion; expected auto, sah, sah-reinsert, sbvh or best",
+        to_string(o.builder));
   if (o.integrator == IntegratorKind::mlt)
     return "--integrator mlt knows no motion blur; expected --integrator path";
   if (scene.has_media)
@@ -285,6 +288,8 @@ void check_optix(const Options& o, const SceneProperties& scene, const DevicePro
   if (scene.spheres > 0)
     refuse(fmt::format("scene '{}' has {} spheres", scene.name, scene.spheres),
            "only triangles and quads are traced by OptiX");
+  if (scene.has_motion)
+    refuse(fmt::format("scene '{}' moves", scene.name), "OptiX traces what stands still");
   if (o.optix_hits == OptixHits::built_in && scene.has_masks)
     refuse("expected --optix-hits custom or any-hit", "only our programs judge masks");
   if (o.stages == Stages::fused) refuse("expected --stages split", "fused stages have no queue");

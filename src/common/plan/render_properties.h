@@ -20,6 +20,7 @@ struct SceneProperties {
   std::size_t tree_groups = 1;       ///< of meshes; each gets a tree
   bool is_primitive_only = false;    ///< nothing that the paper's scenes have not
   bool has_motion = false;           ///< something moves while the shutter is open
+  bool has_moving_surfaces = false;  ///< not the camera alone
   bool has_masks = false;            ///< triangles that not all rays meet
   bool has_media = false;            ///< between surfaces
   bool has_sparse = false;           ///< grids of media

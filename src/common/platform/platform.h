@@ -225,10 +225,25 @@ PT_HD float multiply_rounded(float a, float b) {
 #endif
 }
 
+PT_HD double multiply_rounded(double a, double b) {
+#ifdef __CUDA_ARCH__
+  return __dmul_rn(a, b);
+#else
+  return a * b;
+#endif
+}
+
 /// a + b, rounded, never part of a fused operation.
 PT_HD float add_rounded(float a, float b) {
 #ifdef __CUDA_ARCH__
   return __fadd_rn(a, b);
+#else
+  return a + b;
+#endif
+}
+PT_HD double add_rounded(double a, double b) {
+#ifdef __CUDA_ARCH__
+  return __dadd_rn(a, b);
 #else
   return a + b;
 #endif

@@ -25,6 +25,10 @@ inline FilmPlan film_plan_of(const ImageSettings& settings, const PixelFilter& f
           filter.has_negative()};
 }
 
+inline ShutterTimes shutter_times_of(const ImageSettings& settings) {
+  return {settings.sampler, static_cast<std::uint32_t>(settings.spp)};
+}
+
 /// The numbers of a path that depend on its name alone, whichever kernels it has: those of a lean
 /// scene are PhiloxSource's. `chains`: of --integrator mlt, else null.
 inline SamplerSource sampler_source_of(const ImageSettings& settings,

@@ -14,6 +14,7 @@
 #include "common/error/host_memory.h"
 #include "common/film/develop.h"
 #include "common/plan/plan_steps.h"
+#include "common/render/settings_of.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/mask.h"
 
@@ -58,7 +59,7 @@ Scene seeded_view(const SceneData& scene, const ExecutionPlan& plan) {
   Scene view = host_view(scene, plan.width, plan.height);
   view.triangles.accel = plan.traversal;
   view.mask_seed = mask_seed(plan.seed);
-  view.shutter_times = {plan.sampler, static_cast<std::uint32_t>(plan.spp)};
+  view.shutter_times = shutter_times_of(plan);
   return view;
 }
 

@@ -32,7 +32,7 @@ class CudaRenderer : public FilmRenderer, protected CudaLauncher {
   std::unique_ptr<DeviceImage> device_image() override;
   bool set_camera(const Camera& camera) override;
   /// For changes of materials and lights that leave all arrays their sizes, which get their new
-  /// values in place.
+  /// values in place, in scenes that stand still.
   bool set_scene(const SceneData& scene, const SceneChanges& changes) override;
   void describe(RenderReport& report) const override;
   HardwareCounters count_hardware() override;

@@ -63,6 +63,7 @@ CudaRenderer::~CudaRenderer() = default;
 void CudaRenderer::upload(const SceneData& scene) {
   scene_ = host_view(scene, plan_.width, plan_.height);
   scene_.mask_seed = mask_seed(plan_.seed);
+  scene_.shutter_times = shutter_times_of(plan_);
   if constexpr (counts_lanes) {
     lane_counts_ = memory_.allocate<LaneCounts>("lane counts", 1);
     set_lanes(scene_, LaneCounter(lane_counts_));
@@ -74,6 +75,13 @@ void CudaRenderer::upload(const SceneData& scene) {
     upload_array(pointer, values, kind);
     array_sizes_.push_back(values.size());
   });
+  if (scene.motion.prepared) {
+    Motion motion = scene.motion.prepared->view;
+    scene.motion.prepared->for_each_array(motion, [&](auto*& pointer, const auto& values) {
+      upload_array(pointer, values, "motion");
+    });
+    scene_.motion = memory_.upload("motion", std::vector<Motion>{motion});
+  }
   if (traits_.geometry != Geometry::spheres_and_quads && is_device_builder(plan_.builder)) {
     const DeviceTriangleTree built = build_device_triangle_tree(
         scene.meshes, scene.instances, tree_options(traits_.accel, plan_.builder), memory_);
@@ -259,7 +267,8 @@ bool CudaRenderer::has_same_sizes(const SceneData& scene) {
 }
 
 bool CudaRenderer::set_scene(const SceneData& scene, const SceneChanges& changes) {
-  if (changes.move_surfaces() || changes.normals || !has_same_sizes(scene)) return false;
+  const bool may_move = scene.moves() || changes.move_surfaces() || changes.normals;
+  if (may_move || !has_same_sizes(scene)) return false;
   use_device();
   Scene changed = host_view(scene, plan_.width, plan_.height);  // the numbers of the view
   changed.mask_seed = scene_.mask_seed;

@@ -26,15 +26,17 @@ FeatureKernel feature_kernel(const SceneTraits& traits) {
   } else {
     needed.lighting = Lighting::sky;
   }
-  using Kinds = TypeList<Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::sky>,
-                         Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::sky>,
-                         Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
-                         Traits<Accel::cwbvh, Geometry::mixed, Lighting::full>,
-                         Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
-                         Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>,
-                         Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true, true>,
-                         Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true, true>,
-                         Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true, true, true>>;
+  using Kinds =
+      TypeList<Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::sky>,
+               Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::sky>,
+               Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
+               Traits<Accel::cwbvh, Geometry::mixed, Lighting::full>,
+               Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
+               Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>,
+               Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true, true>,
+               Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true, true>,
+               Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true, true, true>,
+               Traits<Accel::bvh2, Geometry::mixed, Lighting::full, false, false, false, true>>;
   FeatureKernel kernel = nullptr;
   dispatch_traits(Kinds{}, needed, [&](auto kind) { kernel = find_features<decltype(kind)>; });
   return kernel;

@@ -22,7 +22,7 @@ struct Shutter {
   float open = 0.0f, close = 1.0f;
 };
 
-/// What kernels read; `view` points to the rest, so it is never copied.
+/// What the host's kernels read; `view` points to the rest, so it is never copied.
 struct PreparedMotion {
   MotionTracks tracks;
   std::vector<std::uint32_t> light_instances;  ///< see Motion
@@ -34,6 +34,25 @@ struct PreparedMotion {
   PreparedMotion() = default;
   PreparedMotion(const PreparedMotion&) = delete;
   PreparedMotion& operator=(const PreparedMotion&) = delete;
+
+  /// Calls function(pointer in `motion`, vector) for each array: the only list of them.
+  template <class Function>
+  void for_each_array(Motion& motion, Function&& function) const {
+    function(motion.segments, tracks.segments);
+    function(motion.instances, tracks.instances);
+    function(motion.light_instances, light_instances);
+    function(motion.end_triangles, end_triangles);
+    function(motion.end_corners, end_corners);
+    function(motion.end_nodes, end_nodes);
+  }
+  /// When arrays have changed.
+  void update_view() {
+    for_each_array(view, [](auto*& pointer, const auto& values) {
+      pointer = values.empty() ? nullptr : values.data();
+    });
+    view.light_count = static_cast<std::uint32_t>(light_instances.size());
+    view.end_node_count = static_cast<std::uint32_t>(end_nodes.size());
+  }
 };
 
 /// Keys are two or more, in the order of time; before the first and after the last one nothing

@@ -55,8 +55,8 @@ struct Scene {
   std::uint32_t camera_medium_id = no_medium;  ///< see Media
   const Texture* textures = nullptr;
   const std::byte* texels = nullptr;
-  const Motion* motion = nullptr;  ///< on the CPU, of a scene that moves
-  ShutterTimes shutter_times;      ///< likewise
+  const Motion* motion = nullptr;  ///< of a scene that moves, where its arrays are
+  ShutterTimes shutter_times;      ///< of such a scene
   PT_LANE_COUNTER;                 ///< of all that is traced in it; set on CUDA
 
   bool has_only_triangles() const {

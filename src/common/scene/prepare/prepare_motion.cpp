@@ -144,9 +144,8 @@ void prepare_motion(SceneData& scene) {
     tracks.camera = add_track(motion.camera, shutter, "the camera", tracks);
     view.to_camera = inverse(motion.camera.front().to_world);
   }
-  view.segments = tracks.segments.data();
-  view.instances = tracks.instances.data();
   view.camera = tracks.camera;
+  motion.prepared->update_view();
 }
 
 void prepare_moving_lights(SceneData& scene) {
@@ -160,8 +159,7 @@ void prepare_moving_lights(SceneData& scene) {
     for (std::uint32_t light = first[moving.instance]; light < end; ++light)
       motion.light_instances[light] = moving.instance;
   }
-  motion.view.light_instances = motion.light_instances.data();
-  motion.view.light_count = static_cast<std::uint32_t>(motion.light_instances.size());
+  motion.update_view();
 }
 
 }  // namespace pt

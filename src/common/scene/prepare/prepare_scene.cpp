@@ -54,6 +54,8 @@ bool has_moving_emitters(const SceneData& scene) {
 void describe_shading(const SceneData& scene, SceneProperties& properties) {
   properties.has_emitters = std::ranges::any_of(
       scene.material_records, [](const Material& m) { return m.emission != no_emission; });
+  properties.has_moving_emitters = has_moving_emitters(scene);
+  properties.has_deforming_emitters = has_deforming_emitters(scene);
   properties.has_rough_conductors = std::ranges::any_of(scene.materials, is_rough_conductor);
   properties.bsdf_kinds = kinds_of(scene);
   properties.emitters = emitter_count(scene);
@@ -72,8 +74,7 @@ SceneProperties properties_of(const SceneData& scene) {
   if (!scene.instances.empty()) properties.tree_groups = groups_in_use(scene.instances).size();
   properties.is_primitive_only = has_primitives_only(scene);
   properties.has_motion = scene.moves();
-  properties.has_moving_emitters = has_moving_emitters(scene);
-  properties.has_deforming_emitters = has_deforming_emitters(scene);
+  properties.has_moving_surfaces = scene.deforms() || !scene.motion.instances.empty();
   properties.has_masks =
       is_limited(scene.camera) || std::ranges::any_of(scene.materials, is_masked);
   properties.has_media = needs_media(scene);

@@ -113,11 +113,7 @@ void prepare_deformation(SceneData& scene) {
   for (std::size_t i = 0; i < motion.end_nodes.size(); ++i)
     widen(tree.bvh2[i], motion.end_nodes[i]);
   if (!scene.corners.empty()) motion.end_corners = list_corners(meshes);
-  Motion& view = motion.view;
-  view.end_triangles = motion.end_triangles.data();
-  view.end_corners = motion.end_corners.empty() ? nullptr : motion.end_corners.data();
-  view.end_nodes = motion.end_nodes.data();
-  view.end_node_count = static_cast<std::uint32_t>(motion.end_nodes.size());
+  motion.update_view();
 }
 
 /// In the order of InstanceRecord::number: the meshes of group 0 come last.
@@ -206,8 +202,10 @@ void prepare_changes(SceneData& scene, const SceneChanges& changes, const Execut
   }
   if (changes.normals) scene.corners = list_corners(scene.meshes);
   if (changes.instances && !scene.instances.empty()) scene.to_world = instance_transforms(scene);
-  if (changes.lights || changes.move_surfaces())
+  if (changes.lights || changes.move_surfaces()) {
     scene.light_list = list_lights(scene, scene_bounds(scene), plan.light_selection);
+    prepare_moving_lights(scene);
+  }
 }
 
 }  // namespace pt

@@ -1,0 +1,148 @@
+// Scenes that move give the same bits in all modes on a GPU, too, and nearly the CPU's image.
+#include <gtest/gtest.h>
+
+#include "common/image/compare/compare.h"
+#include "cuda_test.h"
+#include "mode_cases.h"
+#include "scene/moving_room.h"
+
+namespace pt {
+namespace {
+
+class CudaMotion : public CudaTest {};
+
+Options moving_options(const std::string& mode, const Settings& more = {}) {
+  Options options = motion_options(61, 40, 5, 5);
+  apply(options, {{"device", "cuda:0"}, {"mode", mode}});
+  return with(options, more);
+}
+
+Rendered render_moving(SceneData scene, const Options& options) {
+  const DeviceInfo device = choose_device(options.device);
+  prepare_scene_for(scene, options, device);
+  EXPECT_TRUE(scene.traits.has_motion);
+  return take_image(*make_renderer(options, scene, device));
+}
+
+/// The room, and what moves in it alone.
+std::vector<SceneData> moving_rooms() {
+  std::vector<SceneData> rooms(6, moving_room());
+  const auto keep = [](SceneData& scene, bool camera, int instance, bool deforming) {
+    auto& moving = scene.motion.instances;
+    if (!camera) scene.motion.camera.clear();
+    std::erase_if(moving, [&](const auto& m) { return static_cast<int>(m.instance) != instance; });
+    if (!deforming) scene.meshes[3].end_positions.clear(), scene.meshes[3].end_normals.clear();
+  };
+  rooms[1].name = "a camera that moves", keep(rooms[1], true, -1, false);
+  rooms[2].name = "an instance that turns", keep(rooms[2], false, 0, false);
+  rooms[3].name = "a lamp that moves", keep(rooms[3], false, 1, false);
+  rooms[4].name = "a mesh that deforms", keep(rooms[4], false, -1, true);
+  rooms[5].name = "a mesh that deforms, without instances", keep(rooms[5], false, -1, true);
+  rooms[5].instances.clear();
+  for (Mesh& mesh : rooms[5].meshes) mesh.group = 0;
+  return rooms;
+}
+
+TEST_F(CudaMotion, AllModesAreEqual) {
+  for (const SceneData& scene : moving_rooms()) {
+    SCOPED_TRACE(scene.name);
+    for (const char* sampler : {"independent", "stratified", "sobol"}) {
+      const Settings by{{"sampler", sampler}};
+      const Rendered expected = render_moving(scene, moving_options("megakernel", by));
+      expect_plausible(expected, moving_options("megakernel", by));
+      for (const Settings& more :
+           {Settings{}, Settings{{"schedule", "host"}}, Settings{{"finish-paths", "0"}},
+            Settings{{"stages", "fused"}, {"finish-paths", "0"}}}) {
+        const Options options = with(moving_options("wavefront", by), more);
+        SCOPED_TRACE(command_of(options));
+        expect_same(render_moving(scene, options), expected);
+      }
+    }
+  }
+}
+
+TEST_F(CudaMotion, MegakernelDoesNotDependOnHow) {
+  const SceneData scene = moving_room();
+  const Rendered expected = render_moving(scene, moving_options("megakernel"));
+  for (const Settings& more : {Settings{{"work", "pixel"}}, Settings{{"work", "sample"}},
+                               Settings{{"block", "33x1"}}, Settings{{"builder", "sah"}}}) {
+    const Options options = moving_options("megakernel", more);
+    SCOPED_TRACE(command_of(options));
+    expect_same(render_moving(scene, options), expected);
+  }
+}
+
+TEST_F(CudaMotion, WavefrontDoesNotDependOnHow) {
+  const SceneData scene = moving_room();
+  const Rendered expected = render_moving(scene, moving_options("megakernel"));
+  const std::vector<Choice> choices{{"compaction", names_of(Compaction::atomic)},
+                                    {"pool-size", {"auto", "300", "11"}},
+                                    {"regenerate", {"on", "off"}},
+                                    {"finish-paths", {"0", "1", "700", "131072"}},
+                                    {"layout", names_of(PoolLayout::soa)},
+                                    {"stages", names_of(Stages::split, {Stages::automatic})},
+                                    {"schedule", names_of(Schedule::host)},
+                                    {"order-surfaces", {"auto", "on", "off"}}};
+  int compared = 0;
+  for (const Settings& settings : variations(choices, 24, 8)) {
+    const Options options = moving_options("wavefront", settings);
+    if (!has_plan(options, scene)) continue;
+    SCOPED_TRACE(command_of(options));
+    expect_same(render_moving(scene, options), expected);
+    if (HasFailure()) return;
+    ++compared;
+  }
+  EXPECT_GT(compared, 15);
+}
+
+// CPU and GPU round differently, and a path that takes another way differs in all that follows.
+TEST_F(CudaMotion, IsAsOnTheCpu) {
+  for (const SceneData& scene : moving_rooms()) {
+    SCOPED_TRACE(scene.name);
+    const Settings more{{"width", "120"}, {"height", "80"}, {"spp", "16"}};
+    const Options options = moving_options("megakernel", more);
+    const Rendered gpu = render_moving(scene, options);
+    const Rendered cpu = render_moving(scene, with(options, {{"device", "cpu"}}));
+    const ImageDifference difference = compare_images(gpu.image, cpu.image, 1e-3);
+    EXPECT_LE(static_cast<double>(difference.pixels_past_tolerance), 0.02 * 120 * 80);
+    EXPECT_EQ(gpu.counts.paths, cpu.counts.paths);
+    EXPECT_NEAR(static_cast<double>(gpu.counts.rays), static_cast<double>(cpu.counts.rays),
+                2e-3 * static_cast<double>(cpu.counts.rays));
+  }
+}
+
+TEST_F(CudaMotion, FirstHitsAreThoseOfTheCpu) {
+  const Settings more{{"aov", "depth,normal"}, {"output", "a.exr"}};
+  const Options options = moving_options("megakernel", more);
+  const Image gpu = render_moving(moving_room(), options).image;
+  const Image cpu = render_moving(moving_room(), with(options, {{"device", "cpu"}})).image;
+  ASSERT_EQ(gpu.layers.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::vector<float>&a = gpu.layers[i].values, &b = cpu.layers.at(i).values;
+    ASSERT_EQ(a.size(), b.size());
+    std::size_t far = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) far += !(std::abs(a[k] - b[k]) <= 1e-3f);
+    EXPECT_LE(far, a.size() / 100) << i;
+  }
+}
+
+TEST_F(CudaMotion, ItsArraysAreCounted) {
+  const DeviceInfo device = choose_device({DeviceChoice::Kind::cuda, 0});
+  SceneData scene = moving_room();
+  const Options options = moving_options("wavefront");
+  prepare_scene_for(scene, options, device);
+  const PreparedMotion& motion = *scene.motion.prepared;
+  Motion view;
+  std::uint64_t expected = sizeof view;
+  motion.for_each_array(view, [&](auto*& pointer, const auto& values) {
+    EXPECT_FALSE(values.empty());
+    expected += values.size() * sizeof *pointer;
+  });
+  std::uint64_t found = 0;
+  for (const BufferSize& buffer : report_of(*make_renderer(options, scene, device)).memory)
+    if (buffer.name == "motion") found += buffer.size_bytes;
+  EXPECT_EQ(found, expected);
+}
+
+}  // namespace
+}  // namespace pt
