@@ -188,7 +188,7 @@ TEST(CudaSceneEdits, OfWhatMoves) {
 // The lights before and after have other places in their list.
 TEST(SceneEdits, LightsOfWhatMovesGoOutAndOn) {
   SceneData scene = moving_room();
-  scene.meshes[0].material = scene.add_material(make_diffuse(Color(0.5f), Color(0.2f)));
+  scene.meshes[1].material = scene.add_material(make_diffuse(Color(0.5f), Color(0.2f)));
   const RenderCommand command = edit_command({{"spp", "4"}});
   RenderSession session{SceneData(scene)};
   render_now(session, command);
@@ -198,6 +198,10 @@ TEST(SceneEdits, LightsOfWhatMovesGoOutAndOn) {
         changes, [&](SceneData& own) { own.materials.back().emission.radiance = Color(value); });
     expect_as_anew(session, command);
   }
+  session.change_scene(changes, [](SceneData& own) {
+    own.materials[own.meshes[3].material].emission.radiance = Color(1.0f);
+  });
+  EXPECT_NE(error_of(session, command).find("meshes that deform cannot emit"), std::string::npos);
 }
 
 TEST(CudaSceneEdits, MaterialsAndLightsKeepTheRenderer) {
