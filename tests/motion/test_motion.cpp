@@ -377,13 +377,13 @@ Shape "trianglemesh" "point3 P" [0 0 5 1 0 5 0 1 5] "integer indices" [0 1 2]
 AttributeEnd
 )");
   std::vector<std::string> warnings;
+  DeviceInfo device = cpu_of_motion();
   const auto load = [&](const std::function<void(Options&)>& set = {}) {
     Options options;
     options.scene = path, options.device = {DeviceChoice::Kind::cpu, 0};
     if (set) set(options);
     warnings.clear();
-    return load_scene(options, cpu_of_motion(),
-                      [&](const std::string& text) { warnings.push_back(text); });
+    return load_scene(options, device, [&](const std::string& text) { warnings.push_back(text); });
   };
   EXPECT_TRUE(load().moves());
   EXPECT_TRUE(warnings.empty());
@@ -394,6 +394,12 @@ AttributeEnd
   EXPECT_NE(warnings[0].find("--integrator mlt knows no motion blur"), std::string::npos);
   EXPECT_EQ(still.instances.at(0).to_world.translation(), Vec3(0.0f));
   EXPECT_THROW(load([&](Options& o) { with_chains(o), o.strict = true; }), Error);
+  device.properties.is_cuda = true;
+  EXPECT_TRUE(load().moves());
+  EXPECT_TRUE(warnings.empty());
+  EXPECT_FALSE(load([](Options& o) { o.builder = TreeBuilder::hploc; }).moves());
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("--builder hploc fits no tree to a motion"), std::string::npos);
 }
 
 }  // namespace

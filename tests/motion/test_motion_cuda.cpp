@@ -72,6 +72,17 @@ TEST_F(CudaMotion, MegakernelDoesNotDependOnHow) {
   }
 }
 
+// What a camera alone moves past may be in a tree that the GPU builds.
+TEST_F(CudaMotion, OfTheCameraDoesNotDependOnWhoBuildsTheTree) {
+  const SceneData scene = moving_rooms()[1];
+  for (const char* mode : {"megakernel", "wavefront"}) {
+    const auto render = [&](const char* builder) {
+      return render_moving(scene, moving_options(mode, {{"builder", builder}}));
+    };
+    expect_same(render("hploc"), render("sah"));
+  }
+}
+
 TEST_F(CudaMotion, WavefrontDoesNotDependOnHow) {
   const SceneData scene = moving_room();
   const Rendered expected = render_moving(scene, moving_options("megakernel"));

@@ -72,7 +72,7 @@ struct alignas(16) Light {
   }
 
   template <class Type>
-  static Light of(const Type& own) {
+  static PT_HD Light of(const Type& own) {
     static_assert(has_layout<Type>());
     Light light{};
     memcpy(reinterpret_cast<char*>(&light), reinterpret_cast<const char*>(&own), sizeof light);
