@@ -41,6 +41,10 @@ struct alignas(16) Affine {
   }
 };
 
+inline bool operator==(const Affine& a, const Affine& b) {
+  return a.row[0] == b.row[0] && a.row[1] == b.row[1] && a.row[2] == b.row[2];
+}
+
 /// first b, then a.
 PT_HD Affine operator*(const Affine& a, const Affine& b) {
   Affine c;

@@ -289,10 +289,6 @@ void pose_nodes(File& file, const LoadOptions& options, float after_s) {
 
 namespace {
 
-bool is_same(const Affine& a, const Affine& b) {
-  return a.row[0] == b.row[0] && a.row[1] == b.row[1] && a.row[2] == b.row[2];
-}
-
 /// Intervals between the times at which all is placed.
 constexpr int shutter_steps = 16;
 
@@ -328,7 +324,7 @@ MovingNodes place_moving_nodes(File& file, const LoadOptions& options) {
       const auto& then = at[static_cast<std::size_t>(i)];
       if (n >= then.size() || then[n].node != node.node) break;  // some overflow at times
       keys.push_back({seconds(i), then[n].to_world});
-      moves = moves || !is_same(keys.back().to_world, node.to_world);
+      moves = moves || keys.back().to_world != node.to_world;
     }
     if (!moves) continue;
     node.keys = std::move(keys);

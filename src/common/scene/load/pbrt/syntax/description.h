@@ -20,10 +20,6 @@ inline bool is_invertible(const Affine& map) {
   return std::isfinite(determinant) && determinant != 0.0f;
 }
 
-inline bool equals(const Affine& a, const Affine& b) {
-  return a.row[0] == b.row[0] && a.row[1] == b.row[1] && a.row[2] == b.row[2];
-}
-
 /// A directive with a type and parameters: a material, a texture, a light, ...
 struct Entity {
   std::string type;

@@ -119,7 +119,7 @@ Entity Interpreter::read_entity(const Directive& directive, std::string_view tar
 
 std::optional<Affine> Interpreter::end_of_motion() const {
   const auto& [begin, end] = state_.to_world;
-  return equals(begin, end) ? std::nullopt : std::optional(end);
+  return begin == end ? std::nullopt : std::optional(end);
 }
 
 std::filesystem::path Interpreter::find(const std::string& name, const Directive& directive) {
