@@ -1,7 +1,7 @@
 """Parameters of a scene that can be changed between renders."""
 import difflib
 from collections.abc import MutableMapping
-from typing import Any, Iterator, List, NoReturn, Tuple
+from typing import Any, Iterator, List, NoReturn, Optional, Tuple
 
 from . import _ptexp
 from ._arrays import floats, numpy_for
@@ -22,7 +22,6 @@ _MITSUBA = {
     "vertex_normals": ("normals",),
 }
 _PARTS = ("camera", "materials", "lights", "instances", "meshes", "spheres")
-_VIEW = ("camera.origin", "camera.target", "camera.up")
 
 
 def _flat(value: Any) -> List[float]:
@@ -33,13 +32,22 @@ def _flat(value: Any) -> List[float]:
     return [float(value)]
 
 
-def _cross(a: Tuple[float, ...], b: Tuple[float, ...]) -> Tuple[float, ...]:
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+def _rows(matrix: List[float]) -> List[List[float]]:
+    return [matrix[i : i + 4] for i in range(0, 16, 4)]
 
 
-def _unit(v: Tuple[float, ...]) -> Tuple[float, ...]:
-    length = sum(x * x for x in v) ** 0.5
-    return tuple(x / length for x in v)
+def _keys(name: str, value: Any) -> Optional[List[Tuple[float, List[float]]]]:
+    """Times and the numbers of matrices, if the value is a list of such pairs."""
+    if not isinstance(value, (list, tuple)) or not any(isinstance(one, (list, tuple)) and len(one) == 2 for one in value):
+        return None
+    keys = []
+    for i, pair in enumerate(value):
+        try:
+            time, matrix = pair
+            keys.append((float(time), _flat(matrix)))
+        except (TypeError, ValueError):
+            raise Error(f"{name}: key {i}: expected a pair of a time in seconds and a 4x4 matrix") from None
+    return keys
 
 
 class Params(MutableMapping):
@@ -48,6 +56,8 @@ class Params(MutableMapping):
     ===============================  ===================================================
     ``camera.origin``, ``.target``   points, scene units, as the file says
     ``camera.up``                    a direction
+    ``camera.to_world``              4x4 matrix: looks along z, x to the left, y up
+    ``camera.shutter_open``          seconds; ``camera.shutter_close``: later
     ``camera.fov``                   degrees, in (0, 180); the axis is the scene's
     ``camera.aperture``              diameter of the lens, scene units; 0: a pinhole
     ``camera.focus_distance``        scene units, > 0
@@ -65,14 +75,17 @@ class Params(MutableMapping):
 
     Values are numbers, tuples of three and 4x4 lists of lists; numpy's arrays are taken, too.
     Mitsuba's names are taken as well: ``materials.red.reflectance``, ``red.reflectance.value``,
-    ``lamp.emitter.radiance.value``, ``bust.vertex_positions`` (flat or not), ``sensor.to_world``
-    (also ``camera.to_world``: 4x4, of origin, target and up).
+    ``lamp.emitter.radiance.value``, ``bust.vertex_positions`` (flat or not), ``sensor.to_world``.
+
+    A ``to_world`` moves while the shutter is open if it is a list of pairs of a time in seconds and a
+    matrix, [(t0, M0), (t1, M1)], times ascending; it reads as such a list. A single matrix, or for the
+    camera an origin, target or up, stops it.
 
     A change costs what depends on it: of materials and lights their tables, of an instance the
     tree over instances, of vertices a refit of the mesh's tree (a new tree where that would be a
-    third cheaper for rays), of a sphere
-    the whole preparation; the value that a parameter has already, nothing. An option of the
-    camera (``look_from=``) overrides the parameter.
+    third cheaper for rays), of a sphere, of what moves and of the shutter the whole preparation;
+    the value that a parameter has already, nothing. An option of the camera (``look_from=``)
+    overrides the parameter.
 
     Raises:
         KeyError: there is no such parameter. None can be added or deleted.
@@ -88,8 +101,6 @@ class Params(MutableMapping):
         if name in self._entries:
             return (name,)
         if isinstance(name, str):
-            if name in ("camera.to_world", "sensor.to_world"):
-                return _VIEW
             place, _, value = name.removesuffix(".value").rpartition(".")
             place = "camera" if place == "sensor" else place.removesuffix(".emitter")
             for part in ("", *(part + "." for part in _PARTS)):
@@ -108,8 +119,6 @@ class Params(MutableMapping):
 
     def __getitem__(self, name: str) -> Any:
         names = self._find(name)
-        if names == _VIEW:
-            return self._view()
         index, shape = self._entries[names[0]]
         if names[0].startswith("meshes."):
             return numpy_for(names[0]).asarray(self._native.get_rows(index))
@@ -118,13 +127,11 @@ class Params(MutableMapping):
             return values[0]
         if len(shape) == 1:
             return tuple(values)
-        return [values[i : i + shape[1]] for i in range(0, len(values), shape[1])]
+        keys = self._native.get_keys(index)
+        return [(time, _rows(matrix)) for time, matrix in keys] or _rows(values)
 
     def __setitem__(self, name: str, value: Any) -> None:
         names = self._find(name)
-        if names == _VIEW:
-            self._set_view(name, value)
-            return
         for own in names:
             index, shape = self._entries[own]
             if own.startswith("meshes."):
@@ -132,29 +139,14 @@ class Params(MutableMapping):
                 rows = floats(value)
                 self._native.set_rows(index, rows.reshape(-1, 3) if rows.ndim == 1 and rows.size % 3 == 0 else rows)
                 continue
+            keys = _keys(own, value) if shape == (4, 4) else None
+            if keys is not None:
+                self._native.set_keys(index, keys)
+                continue
             values = _flat(value)
             if shape == (3,) and len(values) == 1:
                 values *= 3  # grey
             self._native.set(index, values)
-
-    def _view(self) -> List[List[float]]:
-        """As Mitsuba has it: the axes are left, up and forward."""
-        origin, target, up = (self[name] for name in _VIEW)
-        forward = _unit(tuple(b - a for a, b in zip(origin, target)))
-        left = _unit(_cross(up, forward))
-        return [*map(list, zip(left, _cross(forward, left), forward, origin)), [0.0, 0.0, 0.0, 1.0]]
-
-    def _set_view(self, name: str, value: Any) -> None:
-        m = _flat(value)
-        if len(m) != 16 or m[12:] != [0, 0, 0, 1]:
-            raise Error(f"{name}: expected a 4x4 matrix, its last row 0 0 0 1")
-        left, up, forward, origin = (tuple(m[column:12:4]) for column in range(4))
-        if not sum(x * y for x, y in zip(_cross(up, forward), left)) > 0:
-            raise Error(f"{name}: expected a matrix that can be inverted and does not mirror")
-        forward = _unit(forward)
-        distance = max(1.0, *map(abs, origin))  # far enough that rounding does not turn the view
-        for own, v in zip(_VIEW, (origin, tuple(o + distance * f for o, f in zip(origin, forward)), up)):
-            self[own] = v
 
     def __delitem__(self, name: str) -> None:
         raise TypeError("parameters of a scene cannot be deleted")

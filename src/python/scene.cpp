@@ -119,8 +119,29 @@ void SceneObject::set(std::size_t parameter, std::span<const float> values) {
   const std::vector<float> old = p.get(session_->scene());
   if (values.size() != old.size())
     throw Error(fmt::format("{}: {} numbers; expected {}", p.name, values.size(), old.size()));
-  if (std::ranges::equal(values, old)) return;
+  const bool moves = p.get_keys && !p.get_keys(session_->scene()).empty();
+  if (!moves && std::ranges::equal(values, old)) return;
   session_->change_scene(p.changes, [&](SceneData& scene) { p.set(scene, values); });
+}
+
+SceneObject::Keys SceneObject::get_keys(std::size_t parameter) {
+  const auto turn = lock();
+  Keys keys;
+  for (const TransformKey& key : parameters_.at(parameter).get_keys(session_->scene()))
+    keys.emplace_back(double{key.time}, matrix_of(key.to_world));
+  return keys;
+}
+
+void SceneObject::set_keys(std::size_t parameter, const Keys& keys) {
+  const auto turn = lock();
+  const SceneParameter& p = parameters_.at(parameter);
+  std::vector<TransformKey> own;
+  for (const auto& [time, matrix] : keys)
+    own.push_back({static_cast<float>(time),
+                   affine_of(matrix, fmt::format("{}: key {}", p.name, own.size()))});
+  const std::vector<TransformKey> old = p.get_keys(session_->scene());
+  if (own == old) return;
+  session_->change_scene(p.changes, [&](SceneData& scene) { p.set_keys(scene, own); });
 }
 
 nb::dict SceneObject::defaults() const {
@@ -250,6 +271,8 @@ void add_scene(nb::module_& m) {
       .def("get", &SceneObject::get)
       .def("set", [](SceneObject& self, std::size_t parameter,
                      const std::vector<float>& values) { self.set(parameter, values); })
+      .def("get_keys", &SceneObject::get_keys)
+      .def("set_keys", &SceneObject::set_keys)
       .def("get_rows", get_rows)
       .def("set_rows", set_rows);
   m.def("calibrate", calibrate, nb::arg("words"));

@@ -51,6 +51,10 @@ class SceneObject {
   std::vector<float> get(std::size_t parameter);
   /// The value that it has already does nothing. Throws Error for one that it cannot have.
   void set(std::size_t parameter, std::span<const float> values);
+  /// Times in seconds and 4x4 matrices of what moves; none: it stands still.
+  using Keys = std::vector<std::pair<double, std::vector<float>>>;
+  Keys get_keys(std::size_t parameter);
+  void set_keys(std::size_t parameter, const Keys& keys);
   nanobind::dict defaults() const;
 
  private:

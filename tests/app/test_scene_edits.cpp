@@ -216,6 +216,75 @@ TEST(CudaSceneEdits, MaterialsAndLightsKeepTheRenderer) {
   }
 }
 
+// Whose bits those of a pbrt file are is for the tests of Python.
+TEST(SceneEdits, OfMotion) {
+  const RenderCommand command = edit_command({{"spp", "4"}});
+  Editor editor(scene_of(std::string(room) + instances));
+  const auto move = [&](const std::string& name, const std::vector<TransformKey>& keys) {
+    const SceneParameter& p = editor[name];
+    editor.session.change_scene(p.changes, [&](SceneData& scene) { p.set_keys(scene, keys); });
+    EXPECT_EQ(p.get_keys(editor.session.scene()), keys);
+  };
+  const auto map = [&](const std::string& name) {
+    return affine_of(editor[name].get(editor.session.scene()), name);
+  };
+  const Affine brick = map("instances.1.to_world"), camera = map("camera.to_world");
+  const Image still = render_now(editor.session, command).image;
+  Image before = still;
+  const auto expect_other = [&](const char* what) {
+    SCOPED_TRACE(what);
+    const Image after = expect_as_anew(editor.session, command).image;
+    EXPECT_GT(differing_pixels(before, after), 0u);
+    before = after;
+  };
+  move("instances.1.to_world", {{0, brick}, {1, translate({1, 0, 0}) * brick}});
+  expect_other("an instance");
+  move("instances.0.to_world", {{0, brick}, {0.5f, brick * rotate({0, 1, 0}, 90)}, {2, brick}});
+  expect_other("another one before it");
+  editor.set("camera.shutter_close", std::vector{0.5f});
+  expect_other("the shutter");
+  editor.change(editor["materials.red.albedo"]);
+  expect_other("a colour of what moves");
+  move("camera.to_world", {{0, camera}, {1, camera * translate({0.5f, 0, 0})}});
+  expect_other("the camera");
+  const auto set_map = [&](const std::string& name, const Affine& to) {
+    editor.set(name, matrix_of(to));
+    EXPECT_TRUE(editor[name].get_keys(editor.session.scene()).empty());
+  };
+  set_map("camera.to_world", camera);
+  expect_other("the camera stands");
+  set_map("instances.1.to_world", brick);
+  expect_other("one stands");
+  move("camera.to_world", {{0, camera}, {1, camera * translate({0.5f, 0, 0})}});
+  expect_other("the camera once more");
+  editor.set("camera.up", std::vector<float>{0, 1, 0});
+  EXPECT_TRUE(editor.session.scene().motion.camera.empty());
+  expect_other("the camera stands again");
+}
+
+TEST(SceneEdits, MotionThatCannotBeBlurredIsHeldStill) {
+  Editor editor(scene_of(std::string(room) + instances));
+  const RenderCommand path = edit_command({}), mlt = edit_command({{"integrator", "mlt"}});
+  const Image still = render_now(editor.session, mlt).image;
+  const SceneParameter& p = editor["instances.1.to_world"];
+  const Affine begin = affine_of(p.get(editor.session.scene()), p.name);
+  editor.session.change_scene(p.changes, [&](SceneData& scene) {
+    p.set_keys(scene, {{0, begin}, {1, translate({1, 0, 0}) * begin}});
+  });
+  const Image moving = render_now(editor.session, path).image;
+  std::vector<std::string> warnings;
+  MeasureHooks hooks;
+  hooks.stop = [] { return false; };
+  const Image held =
+      editor.session.render(mlt, hooks, [&](const std::string& s) { warnings.push_back(s); }).image;
+  EXPECT_EQ(differing_pixels(held, still), 0u);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("--integrator mlt knows no motion blur"), std::string::npos);
+  EXPECT_EQ(differing_pixels(render_now(editor.session, path).image, moving), 0u);
+  const RenderCommand strict = edit_command({{"integrator", "mlt"}, {"strict", "on"}});
+  EXPECT_NE(error_of(editor.session, strict).find("knows no motion blur"), std::string::npos);
+}
+
 // Where other materials, spheres, media or lights make preparation another one.
 TEST(SceneEdits, EveryParameterOfOtherScenes) {
   const std::string sphere = R"(<shape type="sphere" id="ball"><bsdf type="dielectric"/>

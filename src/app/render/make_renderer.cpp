@@ -36,7 +36,8 @@ bool is_scene_file(const std::string& scene) {
   return !built_in && scene.find_first_of("./") != std::string::npos;
 }
 
-/// What cannot be blurred is rendered as where its motion begins, which is said.
+}  // namespace
+
 void hold_still_if_needed(SceneData& scene, const Options& options, const DeviceInfo& device,
                           const Warn& warn) {
   if (!scene.moves()) return;
@@ -50,8 +51,6 @@ void hold_still_if_needed(SceneData& scene, const Options& options, const Device
   if (warn) warn(what + ". Rendered without motion, as where it begins");
   hold_still(scene);
 }
-
-}  // namespace
 
 SceneData load_scene(const Options& options, const DeviceInfo& device, const Warn& warn) {
   if (is_scene_file(options.scene)) {

@@ -21,6 +21,11 @@ using Warn = std::function<void(const std::string&)>;
 /// Error.
 SceneData load_scene(const Options& options, const DeviceInfo& device, const Warn& warn = {});
 
+/// A scene that moves and cannot be blurred by the options or on the device is held as where its
+/// motion begins, which `warn` is told; with --strict that is an Error. Before resolve_scene.
+void hold_still_if_needed(SceneData& scene, const Options& options, const DeviceInfo& device,
+                          const Warn& warn);
+
 /// A plan for each device to render this resolved scene; all of them have the structure of the
 /// first. The options no longer leave anything to the scene's defaults (apply_defaults,
 /// options/check_options.h). Throws Error when they ask for something that the scene, a device or

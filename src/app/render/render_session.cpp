@@ -126,6 +126,10 @@ CameraParameters& RenderSession::change_camera() {
 bool RenderSession::update(Prepared& ready, const Options& options,
                            const std::vector<DeviceInfo>& devices, SceneChanges changes) const {
   SceneData& scene = ready.scene;
+  const bool on_cuda = devices.front().properties.is_cuda;
+  if (source_.moves() &&
+      (!scene.moves() || !motion_obstacle(options, scene.properties, on_cuda).empty()))
+    return false;  // whether it is blurred is to be decided again
   if (!resolve_changes(scene, source_, changes, options)) return false;
   if (ready.rendering && !changes.any_but_camera()) return true;
   std::vector<ExecutionPlan> plans = ready.plan_anew(options, devices);
@@ -166,6 +170,7 @@ RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, co
     next.reset();  // its memory is needed
     next = std::make_unique<Prepared>();
     next->scene = source_;
+    hold_still_if_needed(next->scene, options, devices.front(), warn);
     resolve_scene(next->scene, options);
     next->plans = plan_render(options, next->scene, devices);
     prepare_scene(next->scene, next->plans.front());
@@ -246,6 +251,7 @@ std::vector<Decision> RenderSession::plan(const RenderCommand& command) {
   const std::vector<DeviceInfo> devices = calibrated_devices(options, command.given, {});
   apply_defaults(source_.defaults, command.given, options);
   SceneData scene = source_;
+  hold_still_if_needed(scene, options, devices.front(), {});
   resolve_scene(scene, options);
   return plan_render(options, scene, devices).front().decisions;
 }

@@ -159,6 +159,9 @@ TEST(SceneParameters, AreAllThatASceneHas) {
   const std::vector<std::string> expected{"camera.origin",
                                           "camera.target",
                                           "camera.up",
+                                          "camera.to_world",
+                                          "camera.shutter_open",
+                                          "camera.shutter_close",
                                           "camera.fov",
                                           "camera.aperture",
                                           "camera.focus_distance",
@@ -198,6 +201,7 @@ TEST(SceneParameters, AreAllThatASceneHas) {
   EXPECT_EQ(names_in(scene), expected);
   const std::map<std::string, SceneChanges> stale = {
       {"camera.fov", {.camera = true}},
+      {"camera.shutter_open", {.camera = true}},
       {"materials.one.albedo", {.shading = true}},
       {"materials.one.opacity", {.shading = true, .lights = true}},
       {"materials.material_3.weight", {.shading = true}},
@@ -217,8 +221,8 @@ TEST(SceneParameters, AreAllThatASceneHas) {
   EXPECT_EQ(found, stale.size());
 
   scene.camera.orthographic = true;  // without a field of view, a lens or a plane in focus
-  std::vector<std::string> others(expected.begin(), expected.begin() + 3);
-  others.insert(others.end(), expected.begin() + 6, expected.end());
+  std::vector<std::string> others(expected.begin(), expected.begin() + 6);
+  others.insert(others.end(), expected.begin() + 9, expected.end());
   EXPECT_EQ(names_in(scene), others);
 }
 
@@ -250,6 +254,7 @@ std::vector<float> other_values(const SceneParameter& p, std::size_t count) {
 TEST(SceneParameters, EachIsReadBackAndChangesNoOther) {
   const SceneData before = scene_of_all();
   for (const SceneParameter& p : scene_parameters(before)) {
+    if (p.name == "camera.to_world") continue;  // is made of others
     SceneData scene = before;
     const std::vector<float> values = other_values(p, p.get(before).size());
     std::size_t size = 1;
@@ -259,6 +264,7 @@ TEST(SceneParameters, EachIsReadBackAndChangesNoOther) {
     EXPECT_EQ(p.get(scene), values) << p.name;
     EXPECT_NE(p.get(before), values) << p.name;
     for (const SceneParameter& other : scene_parameters(before)) {
+      if (other.name == "camera.to_world") continue;
       const SceneData& expected = other.name == p.name ? scene : before;
       EXPECT_EQ(other.get(scene), other.get(expected)) << other.name;
     }
@@ -294,6 +300,69 @@ TEST(SceneParameters, AreWhatTheirNamesSay) {
   EXPECT_EQ(scene.spheres[1].radius_squared, 0.0625f);
   set(scene, "materials.one_2.albedo", {0.1f, 0.2f, 0.3f});
   EXPECT_EQ(scene.materials[1].color(0), Color(0.1f, 0.2f, 0.3f));
+}
+
+TEST(SceneParameters, TheViewIsOfOriginTargetAndUp) {
+  SceneData scene = scene_of_all();
+  set(scene, "camera.origin", {1, 2, 3}), set(scene, "camera.target", {1, 2, 5});
+  const auto view = [&] {
+    for (const SceneParameter& p : scene_parameters(scene))
+      if (p.name == "camera.to_world") return affine_of(p.get(scene), "view");
+    return Affine();
+  };
+  EXPECT_EQ(view(), translate({1, 2, 3}));  // x to the left
+  set(scene, "camera.to_world", matrix_of(view()));
+  EXPECT_EQ(scene.camera.look_at, Vec3(1, 2, 5)) << "the same view changes nothing";
+  const Affine turned = translate({4, 5, 6}) * rotate({0, 1, 0}, 90);
+  set(scene, "camera.to_world", matrix_of(turned));
+  EXPECT_EQ(scene.camera.look_from, Vec3(4, 5, 6));
+  EXPECT_LT(glm::length(normalize(scene.camera.look_at - Vec3(4, 5, 6)) - Vec3(1, 0, 0)), 1e-6f);
+  EXPECT_LT(glm::length(scene.camera.up - Vec3(0, 1, 0)), 1e-6f);
+  EXPECT_THROW(set(scene, "camera.to_world", matrix_of(scale({-1, 1, 1}))), Error);
+}
+
+TEST(SceneParameters, MotionIsOfKeysThatAscendAndCanBeInverted) {
+  SceneData scene = scene_of_all();
+  const auto parameter = [&](const std::string& name) {
+    const auto all = scene_parameters(scene);
+    return *std::ranges::find(all, name, &SceneParameter::name);
+  };
+  const auto error_of = [&](const std::string& name, const std::vector<TransformKey>& keys) {
+    try {
+      parameter(name).set_keys(scene, keys);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<std::pair<std::vector<TransformKey>, const char*>> cases = {
+      {{}, "0 key"},
+      {{{0, {}}}, "1 key"},
+      {{{0, {}}, {0, {}}}, "key 1 of its motion at 0 s; expected times that ascend"},
+      {{{0, {}}, {none, {}}}, "key 1 of its motion at nan s"},
+      {{{HUGE_VALF, {}}, {1, {}}}, "key 0 of its motion at inf s"},
+      {{{0, {}}, {1, scale({1, 0, 1})}}, "key 1 of its motion; expected a transform that can"},
+      {{{0, translate({none, 0, 0})}, {1, {}}}, "key 0 of its motion; expected a transform that"},
+      {{{0, {}}, {1, scale({-1, 1, 1})}}, "key 1 of its motion mirrors other than key 0"}};
+  for (const char* name : {"instances.1.to_world", "camera.to_world"}) {
+    for (const auto& [keys, text] : cases) {
+      const std::string error = error_of(name, keys);
+      EXPECT_TRUE(error.starts_with(name)) << error;
+      EXPECT_NE(error.find(text), std::string::npos) << error;
+      EXPECT_FALSE(scene.moves()) << text;
+    }
+  }
+  EXPECT_EQ(error_of("instances.1.to_world", {{0, translate({1, 2, 3})}, {1, {}}}), "");
+  EXPECT_EQ(error_of("instances.0.to_world", {{0, {}}, {2, translate({1, 2, 3})}}), "");
+  ASSERT_EQ(scene.motion.instances.size(), 2u);
+  EXPECT_EQ(scene.motion.instances[1].instance, 0u);
+  EXPECT_EQ(scene.instances[1].to_world, translate({1, 2, 3}));
+  parameter("instances.1.to_world").set(scene, matrix_of(scale({2, 2, 2})));
+  ASSERT_EQ(scene.motion.instances.size(), 1u);
+  EXPECT_EQ(scene.motion.instances[0].keys.back().time, 2.0f);
+  set(scene, "camera.shutter_open", {0.25f}), set(scene, "camera.shutter_close", {0.5f});
+  EXPECT_EQ(scene.motion.shutter, (Shutter{0.25f, 0.5f}));
 }
 
 TEST(SceneParameters, NoLightTakesANegativeNumber) {

@@ -2,6 +2,8 @@
 // multiply-adds.
 #pragma once
 
+#include <algorithm>
+
 #include "common/geometry/ray.h"
 #include "common/math/transform.h"
 #include "common/sampling/warp.h"
@@ -31,6 +33,15 @@ struct CameraParameters {
   float far_clip = infinite_distance;  ///< camera rays hit nothing behind the plane there
   bool hides_emitters = false;         ///< camera rays pass through emitters and see no environment
 };
+
+/// Puts a camera where the map puts the origin, looking along the map's z with its y up.
+inline void look_along_z(const Affine& to_world, CameraParameters& camera) {
+  camera.look_from = to_world.translation();
+  // Far enough that rounding does not turn the view.
+  const float distance = std::max(1.0f, max_abs(camera.look_from));
+  camera.look_at = camera.look_from + distance * glm::normalize(to_world.vector({0, 0, 1}));
+  camera.up = to_world.vector({0, 1, 0});
+}
 
 /// Whether camera rays ignore some surfaces that other rays hit.
 PT_HD bool is_limited(const CameraParameters& camera) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "common/accel/nodes.h"
@@ -15,11 +16,18 @@ namespace pt {
 struct TransformKey {
   float time = 0.0f;
   Affine to_world;
+
+  bool operator==(const TransformKey&) const = default;
 };
+
+/// Throws Error, which begins with `what`, for keys between which nothing can be interpolated.
+void check_keys(const std::vector<TransformKey>& keys, const std::string& what);
 
 /// When light reaches the film, in seconds; it opens before it closes.
 struct Shutter {
   float open = 0.0f, close = 1.0f;
+
+  bool operator==(const Shutter&) const = default;
 };
 
 /// What the host's kernels read; `view` points to the rest, so it is never copied.
@@ -65,7 +73,9 @@ struct MotionData {
 
   Shutter shutter;
   std::vector<TransformKey> camera;  ///< poses of the camera's space, which the first key's pose
-                                     ///< takes to what the scene's camera says; empty: it stands
+                                     ///< takes to what the scene's camera says; those of loaders
+                                     ///< have it look along z, with x to the left and y up; empty:
+                                     ///< it stands
   std::vector<MovingInstance> instances;     ///< whose Instance::to_world is then the first key's
   std::shared_ptr<PreparedMotion> prepared;  ///< of the above, by prepare_motion(); null: it stands
 

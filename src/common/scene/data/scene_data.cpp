@@ -1,8 +1,12 @@
 #include "common/scene/data/scene_data.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <map>
 
+#include "common/error/error.h"
 #include "common/geometry/primitives.h"
 
 namespace pt {
@@ -35,6 +39,38 @@ std::uint64_t SceneData::triangle_count() const {
   std::uint64_t count = 0;
   for (const Mesh& mesh : meshes) count += mesh.triangles.size();
   return count;
+}
+
+namespace {
+
+bool is_invertible(const Affine& a) {
+  const auto is_finite = [](const Affine& map) {
+    double sum = 0;
+    for (const Vec4& row : map.row)
+      for (int i = 0; i < 4; ++i) sum += std::abs(double{row[i]});
+    return sum < 1e15;
+  };
+  const float determinant = a.determinant();
+  return is_finite(a) && std::isfinite(determinant) && determinant != 0.0f && is_finite(inverse(a));
+}
+
+}  // namespace
+
+void check_keys(const std::vector<TransformKey>& keys, const std::string& what) {
+  const auto refuse = [&](const std::string& why) {
+    throw Error(fmt::format("{}: {}", what, why));
+  };
+  if (keys.size() < 2) refuse(fmt::format("{} key of a motion; expected two or more", keys.size()));
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const Affine& map = keys[i].to_world;
+    if (!is_invertible(map))
+      refuse(fmt::format("key {} of its motion; expected a transform that can be inverted", i));
+    if ((map.determinant() < 0.0f) != (keys[0].to_world.determinant() < 0.0f))
+      refuse(fmt::format("key {} of its motion mirrors other than key 0; expected all or none", i));
+    if (!std::isfinite(keys[i].time) || (i > 0 && !(keys[i].time > keys[i - 1].time)))
+      refuse(
+          fmt::format("key {} of its motion at {} s; expected times that ascend", i, keys[i].time));
+  }
 }
 
 namespace {

@@ -18,6 +18,19 @@ using Values = std::span<const float>;
 Vec3 vector_of(Values v) { return {v[0], v[1], v[2]}; }
 std::vector<float> list_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 
+/// From a space where the camera looks along z, with x to the left and y up; any, if its parameters
+/// describe none.
+Affine view_of(const CameraParameters& camera) {
+  using DVec3 = glm::dvec3;
+  const DVec3 forward = glm::normalize(DVec3(camera.look_at) - DVec3(camera.look_from));
+  const DVec3 left = glm::normalize(glm::cross(DVec3(camera.up), forward));
+  const DVec3 up = glm::cross(forward, left);
+  Affine view;
+  for (int i = 0; i < 3; ++i)
+    view.row[i] = Vec4(glm::dvec4(left[i], up[i], forward[i], camera.look_from[i]));
+  return view;
+}
+
 /// Collects the parameters of a scene.
 class Lister {
  public:
@@ -71,9 +84,20 @@ class Lister {
     const auto part = [](auto field) {
       return [field](auto& scene) -> auto& { return scene.camera.*field; };
     };
-    add_vector("camera.origin", part(&CameraParameters::look_from));
-    add_vector("camera.target", part(&CameraParameters::look_at));
-    add_vector("camera.up", part(&CameraParameters::up));
+    const auto place = [](auto field) {
+      return [field](auto& scene) -> auto& {
+        if constexpr (requires { scene.motion.camera.clear(); }) scene.motion.camera.clear();
+        return scene.camera.*field;
+      };
+    };
+    add_vector("camera.origin", place(&CameraParameters::look_from));  // set, it stands there
+    add_vector("camera.target", place(&CameraParameters::look_at));
+    add_vector("camera.up", place(&CameraParameters::up));
+    add_view();
+    add_number(
+        "camera.shutter_open", [](auto& s) -> auto& { return s.motion.shutter.open; });
+    add_number(
+        "camera.shutter_close", [](auto& s) -> auto& { return s.motion.shutter.close; });
     if (scene_.camera.orthographic) return;
     add_number("camera.fov", part(&CameraParameters::fov_degrees));
     add_number("camera.aperture", part(&CameraParameters::aperture));
@@ -135,26 +159,56 @@ class Lister {
           "lights.sun.radiance", [](auto& s) -> auto& { return s.sun.radiance; });
   }
 
+  /// `get(scene)`: where it is, or where its motion begins. `place(scene, map)` puts it there.
+  /// `set_keys` has checked ones, or none.
+  template <class Get, class Place, class GetKeys, class SetKeys>
+  void add_transform(const std::string& name, Get get, Place place, GetKeys get_keys,
+                     SetKeys set_keys) {
+    add(
+        name, {4, 4}, [get](const SceneData& scene) { return matrix_of(get(scene)); },
+        [=](SceneData& scene, Values v) {
+          place(scene, affine_of(v, name));
+          set_keys(scene, {});
+        });
+    list_.back().get_keys = get_keys;
+    list_.back().set_keys = [=](SceneData& scene, const std::vector<TransformKey>& keys) {
+      check_keys(keys, name);
+      place(scene, keys.front().to_world);
+      set_keys(scene, keys);
+    };
+  }
+
+  void add_view() {
+    const std::string name = "camera.to_world";
+    add_transform(
+        name, [](const SceneData& scene) { return view_of(scene.camera); },
+        [name](SceneData& scene, const Affine& map) {
+          if (!(map.determinant() > 0.0f))
+            throw Error(name + ": expected a matrix that does not mirror");
+          if (map != view_of(scene.camera)) look_along_z(map, scene.camera);
+        },
+        [](const SceneData& scene) { return scene.motion.camera; },
+        [](SceneData& scene, const std::vector<TransformKey>& keys) {
+          scene.motion.camera = keys;
+        });
+  }
+
   void add_instances() {
+    using Moving = MotionData::MovingInstance;
     for (std::uint32_t i = 0; i < scene_.instances.size(); ++i) {
-      const std::string name = fmt::format("instances.{}.to_world", i);
-      add(
-          name, {4, 4},
+      add_transform(
+          fmt::format("instances.{}.to_world", i),
+          [i](const SceneData& scene) { return scene.instances[i].to_world; },
+          [i](SceneData& scene, const Affine& map) { scene.instances[i].to_world = map; },
           [i](const SceneData& scene) {
-            std::vector<float> values(16, 0.0f);
-            std::memcpy(values.data(), &scene.instances[i].to_world.row, sizeof(Affine));
-            values.back() = 1.0f;
-            return values;
+            const std::vector<Moving>& moving = scene.motion.instances;
+            const auto own = std::ranges::find(moving, i, &Moving::instance);
+            return own == moving.end() ? std::vector<TransformKey>() : own->keys;
           },
-          [i, name](SceneData& scene, Values v) {
-            static_assert(sizeof(Affine) == 12 * sizeof(float));
-            Affine map;
-            std::memcpy(&map.row, v.data(), sizeof(Affine));
-            if (v[12] != 0 || v[13] != 0 || v[14] != 0 || v[15] != 1 || map.determinant() == 0.0f)
-              throw Error(name +
-                          ": expected an affine map that can be inverted, its last row 0 0 "
-                          "0 1");
-            scene.instances[i].to_world = map;
+          [i](SceneData& scene, const std::vector<TransformKey>& keys) {
+            std::vector<Moving>& moving = scene.motion.instances;
+            std::erase_if(moving, [i](const Moving& one) { return one.instance == i; });
+            if (!keys.empty()) moving.push_back({i, keys});
           });
     }
   }
@@ -232,6 +286,28 @@ class Lister {
 };
 
 }  // namespace
+
+Affine affine_of(Values v, const std::string& what) {
+  static_assert(sizeof(Affine) == 12 * sizeof(float));
+  if (v.size() != 16)
+    throw Error(fmt::format("{}: {} numbers; expected a 4x4 matrix", what, v.size()));
+  for (const float x : v)
+    if (!std::isfinite(x)) throw Error(fmt::format("{}: {}: expected finite numbers", what, x));
+  Affine map;
+  std::memcpy(&map.row, v.data(), sizeof(Affine));
+  if (v[12] != 0 || v[13] != 0 || v[14] != 0 || v[15] != 1 || map.determinant() == 0.0f)
+    throw Error(what +
+                ": expected an affine map that can be inverted, its last row 0 0 "
+                "0 1");
+  return map;
+}
+
+std::vector<float> matrix_of(const Affine& map) {
+  std::vector<float> values(16, 0.0f);
+  std::memcpy(values.data(), &map.row, sizeof(Affine));
+  values.back() = 1.0f;
+  return values;
+}
 
 SceneChanges changes_of(std::string_view parameter) {
   const std::string_view part = parameter.substr(0, parameter.find('.'));

@@ -1,4 +1,4 @@
-// The parameters of a scene in memory that can be changed, by name: "camera.fov",
+// The parameters of a scene in memory that can be changed, by name: "camera.to_world",
 // "materials.red.albedo", "lights.lamp.radiance", "instances.3.to_world", "meshes.bust.vertices",
 // "spheres.ball.radius".
 #pragma once
@@ -44,7 +44,16 @@ struct SceneParameter {
   /// Takes as many numbers as get() returns. Throws Error for values that are not possible, having
   /// changed nothing.
   std::function<void(SceneData&, std::span<const float>)> set;
+  // Of transforms, which are 4x4 matrices and may move; set() stops that.
+  /// None: it stands still.
+  std::function<std::vector<TransformKey>(const SceneData&)> get_keys = {};
+  /// Throws Error as set() does.
+  std::function<void(SceneData&, const std::vector<TransformKey>&)> set_keys = {};
 };
+
+/// The map of a matrix of 16 numbers, row by row. Throws Error, which begins with `what`.
+Affine affine_of(std::span<const float> matrix, const std::string& what);
+std::vector<float> matrix_of(const Affine& map);
 
 /// The parameters of an unprepared scene: its camera, the parameters of its materials, the radiance
 /// of its lights, its instances' places, its meshes' vertices and normals, its spheres. Meshes have

@@ -49,13 +49,6 @@ Decomposed decompose(const Affine& a) {
           0.5 * (stretch + glm::transpose(stretch))};
 }
 
-bool is_finite(const Affine& a) {
-  double sum = 0;
-  for (const Vec4& row : a.row)
-    for (int i = 0; i < 4; ++i) sum += std::abs(double{row[i]});
-  return sum < 1e15;
-}
-
 Vec4 to_vec4(const glm::dquat& q) { return Vec4(glm::dvec4(q.x, q.y, q.z, q.w)); }
 
 MotionSegment make_segment(const Decomposed& from, Decomposed to, double begin, double end) {
@@ -79,26 +72,6 @@ MotionSegment make_segment(const Decomposed& from, Decomposed to, double begin, 
     segment.stretched[i] = Vec3(to.stretch[i] - from.stretch[i]);
   }
   return segment;
-}
-
-/// Throws Error, which begins with `what`.
-void check_keys(const std::vector<TransformKey>& keys, const std::string& what) {
-  const auto refuse = [&](const std::string& why) {
-    throw Error(fmt::format("{}: {}", what, why));
-  };
-  if (keys.size() < 2) refuse(fmt::format("{} key of a motion; expected two or more", keys.size()));
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const Affine& map = keys[i].to_world;
-    const float determinant = map.determinant();
-    if (!is_finite(map) || !std::isfinite(determinant) || determinant == 0.0f ||
-        !is_finite(inverse(map)))
-      refuse(fmt::format("key {} of its motion; expected a transform that can be inverted", i));
-    if ((determinant < 0.0f) != (keys[0].to_world.determinant() < 0.0f))
-      refuse(fmt::format("key {} of its motion mirrors other than key 0; expected all or none", i));
-    if (!std::isfinite(keys[i].time) || (i > 0 && !(keys[i].time > keys[i - 1].time)))
-      refuse(
-          fmt::format("key {} of its motion at {} s; expected times that ascend", i, keys[i].time));
-  }
 }
 
 MotionTrack add_track(const std::vector<TransformKey>& keys, const Shutter& shutter,

@@ -128,7 +128,7 @@ bool move_camera(SceneData& scene, const CameraParameters& camera, const Options
 }
 
 void hold_still(SceneData& scene) {
-  scene.motion = {};
+  scene.motion.camera.clear(), scene.motion.instances.clear();
   for (Mesh& mesh : scene.meshes) mesh.end_positions.clear(), mesh.end_normals.clear();
 }
 
@@ -193,8 +193,12 @@ bool resolve_shading(SceneData& scene, const SceneData& source, const Options& o
 
 bool resolve_changes(SceneData& scene, const SceneData& source, const SceneChanges& changes,
                      const Options& options) {
-  if (changes.move_surfaces() &&
-      (scene.primitive_count() > 0 || !scene.media.empty() || scene.moves()))
+  // What moves is prepared anew.
+  const bool moves = scene.moves() || source.moves();
+  if (changes.move_surfaces() && (scene.primitive_count() > 0 || !scene.media.empty() || moves))
+    return false;
+  if (changes.camera && moves &&
+      (!source.motion.camera.empty() || scene.motion.shutter != source.motion.shutter))
     return false;
   if (changes.instances) scene.instances = source.instances;
   for (std::size_t i = 0; i < source.meshes.size(); ++i) {

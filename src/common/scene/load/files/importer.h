@@ -79,15 +79,6 @@ inline float gloss_of_coat(float roughness) {
 
 inline float cosine_of_degrees(float degrees) { return std::cos(degrees * pi / 180.0f); }
 
-/// Puts a camera where the map puts the origin, looking along the map's z with its y up.
-inline void look_along_z(const Affine& to_world, CameraParameters& camera) {
-  camera.look_from = to_world.translation();
-  // Far enough that rounding does not turn the view.
-  const float distance = std::max(1.0f, max_abs(camera.look_from));
-  camera.look_at = camera.look_from + distance * glm::normalize(to_world.vector({0, 0, 1}));
-  camera.up = to_world.vector({0, 1, 0});
-}
-
 /// A view as a file has written it.
 struct LookAt {
   Vec3 origin, target;

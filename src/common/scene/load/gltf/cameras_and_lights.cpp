@@ -66,7 +66,7 @@ Affine camera_pose(const Affine& to_world) {
   const Vec3 right = normalize(glm::cross(up, back)), above = glm::cross(back, right);
   Affine pose;
   for (int i = 0; i < 3; ++i)
-    pose.row[i] = {right[i], above[i], back[i], to_world.translation()[i]};
+    pose.row[i] = {-right[i], above[i], -back[i], to_world.translation()[i]};
   return pose;
 }
 

@@ -49,7 +49,9 @@ void place_camera(Context& context, const Entity& entity) {
   if (const auto& look = context.description.camera_look_at) take_written_view(*look, camera);
   if (entity.end_to_world) {
     const Description& d = context.description;
-    context.scene.motion.camera = {{d.begin_s, map}, {d.end_s, inverse(*entity.end_to_world)}};
+    const Affine left = scale({camera.mirrored ? 1.0f : -1.0f, 1, 1});
+    context.scene.motion.camera = {{d.begin_s, map * left},
+                                   {d.end_s, inverse(*entity.end_to_world) * left}};
   }
 }
 
