@@ -135,15 +135,19 @@ Picture picture_of_numbers(Picture picture, const AovInfo& info, std::vector<flo
   return picture;
 }
 
+/// Vectors of any length, each component of which has a range of its own.
+bool has_ranges(const AovInfo& info) {
+  return info.name == aov::Position::name || info.name == aov::Motion::name;
+}
+
 /// Three numbers of a pixel, or two.
 Color vector_color(const float* v, const AovInfo& info,
                    const std::array<std::array<float, 2>, 3>& ranges) {
   if (info.channels == "RGB") return {v[0], v[1], v[2]};
   if (info.channels == "UV") return decoded({v[0] - std::floor(v[0]), v[1] - std::floor(v[1]), 0});
-  const bool is_position = info.name == aov::Position::name;
-  Color color;
-  for (int c = 0; c < 3; ++c)
-    color[c] = is_position ? share_of(v[c], ranges[c]) : 0.5f * v[c] + 0.5f;
+  Color color(0.0f);
+  for (int c = 0; c < static_cast<int>(info.channels.size()); ++c)
+    color[c] = has_ranges(info) ? share_of(v[c], ranges[c]) : 0.5f * v[c] + 0.5f;
   return decoded(color);
 }
 
@@ -160,7 +164,7 @@ Picture picture_of_layer(const Image& image, const ImageLayer& layer, const AovI
   const std::size_t channels = info.channels.size();
   if (channels == 1) return picture_of_numbers(std::move(picture), info, layer.values, samples);
   std::array<std::array<float, 2>, 3> ranges{};
-  for (std::size_t c = 0; c < channels && info.name == aov::Position::name; ++c) {
+  for (std::size_t c = 0; c < channels && has_ranges(info); ++c) {
     std::vector<float> values;
     for (std::size_t i = c; i < layer.values.size(); i += channels)
       values.push_back(layer.values[i]);

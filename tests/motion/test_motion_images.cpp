@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "common/film/aov.h"
 #include "common/scene/prepare/prepare_steps.h"
 #include "scene/moving_room.h"
 #include "statistics.h"
@@ -94,6 +95,139 @@ TEST(MotionImages, ACameraAndAThingThatMoveTogetherStandStill) {
   scene.motion.instances = {{0, {{0.0f, {}}, {1.0f, translate({3, 2, 1})}}}};
   expect_band(image_of_motion(scene, motion_options(16, 1, 64)),
               [](int x) { return x >= 2 && x < 5 ? 1.0 : 0.0; });
+}
+
+/// Layers by name, of one sample a pixel unless `spp` says.
+class MotionLayers {
+ public:
+  MotionLayers(const SceneData& scene, int width, int height, int spp = 1,
+               const char* accel = "bvh2") {
+    Options options = motion_options(width, height, spp);
+    options.aovs = aov_bit<aov::Motion> | aov_bit<aov::Depth> | aov_bit<aov::Position> |
+                   aov_bit<aov::Primitive>;
+    image_ = image_of_motion(scene, options, accel);
+  }
+  float depth(std::size_t i) const { return layer("depth").values[i]; }
+  bool is_hit(std::size_t i) const { return layer("primitive").numbers[i] != no_primitive; }
+  Vec2 motion(std::size_t i) const {
+    const std::vector<float>& v = layer("motion").values;
+    return {v[2 * i], v[2 * i + 1]};
+  }
+  Vec3 position(std::size_t i) const {
+    const std::vector<float>& v = layer("position").values;
+    return {v[3 * i], v[3 * i + 1], v[3 * i + 2]};
+  }
+  std::size_t count() const { return static_cast<std::size_t>(image_.width * image_.height); }
+
+ private:
+  const ImageLayer& layer(const std::string& name) const {
+    return *std::ranges::find(image_.layers, name, &ImageLayer::name);
+  }
+  Image image_;
+};
+
+void expect_near(const Vec2& found, const Vec2& expected, std::size_t pixel) {
+  EXPECT_NEAR(found.x, expected.x, 2e-3) << pixel;
+  EXPECT_NEAR(found.y, expected.y, 2e-3) << pixel;
+}
+
+TEST(MotionLayers, OfWhatGoesAreItsWayWhereItIsSeen) {
+  SceneData scene = band_scene();
+  scene.motion.instances = {{0, {{0.0f, {}}, {1.0f, translate({6, -2, 0})}}}};
+  SceneData deforming = band_scene();
+  deforming.materials[0] = make_diffuse(Color(0.0f));
+  deforming.meshes[0].end_positions = deforming.meshes[0].positions;
+  for (Vec3& p : deforming.meshes[0].end_positions) p += Vec3(6, -2, 0);
+  for (const char* accel : {"bvh2", "brute"}) {
+    for (const SceneData& moving : {scene, deforming}) {
+      const MotionLayers layers(moving, 16, 1, 16384, accel);
+      for (std::size_t x = 0; x < 16; ++x) {
+        const auto part = static_cast<float>(seen_part(static_cast<int>(x), 6));
+        EXPECT_NEAR(layers.motion(x).x, 6 * part, 0.12) << x;
+        EXPECT_NEAR(layers.motion(x).y, 2 * part, 0.04) << x;                   // down
+        EXPECT_FLOAT_EQ(layers.depth(x), x >= 5 && x < 8 ? 10.0f : 0.0f) << x;  // halfway
+      }
+    }
+  }
+}
+
+/// A wall in the plane z = 0, seen from the distance of 10, 24 x 16 pixels at 2 a unit there.
+SceneData wall_scene() {
+  SceneData scene;
+  scene.name = "wall";
+  scene.camera.look_from = {0, 0, 10}, scene.camera.look_at = {0, 0, 0};
+  scene.camera.fov_degrees = 2 * std::atan(0.4f) * 180 / pi;
+  scene.add_material(make_diffuse(Color(0.5f)));
+  scene.meshes = {square_of(-99, 99, -99, 99, 0, 0)};
+  return scene;
+}
+
+TEST(MotionLayers, OfAMovingCameraAreTheProjectionsOfWhatStands) {
+  SceneData scene = wall_scene();
+  scene.motion.camera = {{0.0f, translate({0, 0, 10})}, {1.0f, translate({1, 0.5f, 8})}};
+  const MotionLayers layers(scene, 24, 16);
+  for (std::size_t i = 0; i < layers.count(); ++i) {
+    const Vec3 p = layers.position(i);
+    const Vec2 from = 20.0f * Vec2(p.x, -p.y) / 10.0f;  // 20 pixels: the distance of the image
+    const Vec2 to = 20.0f * Vec2(p.x - 1, -(p.y - 0.5f)) / 8.0f;
+    expect_near(layers.motion(i), to - from, i);
+    // One sample a pixel, with its ray from another place at mid-shutter.
+    const Vec2 at(static_cast<float>(i % 24) - 11.5f, static_cast<float>(i / 24) - 7.5f);
+    EXPECT_NEAR(layers.depth(i), 9 * std::sqrt(1 + glm::dot(at, at) / 400), 0.25) << i;
+  }
+  scene.motion.instances = {{0, {{0.0f, {}}, {1.0f, translate({1, 0.5f, -2})}}}};
+  scene.meshes[0].group = 1, scene.instances = {{1, {}}};
+  const MotionLayers together(scene, 24, 16);
+  for (std::size_t i = 0; i < together.count(); ++i) expect_near(together.motion(i), Vec2(0.0f), i);
+}
+
+TEST(MotionLayers, OfAWheelAreItsChords) {
+  SceneData scene = wall_scene();
+  scene.meshes[0].group = 1, scene.instances = {{1, {}}};
+  scene.motion.instances = {{0, {{0.0f, {}}, {1.0f, rotate({0, 0, 1}, 60)}}}};
+  const MotionLayers layers(scene, 24, 16);
+  for (std::size_t i = 0; i < layers.count(); ++i) {
+    const Vec2 p(layers.position(i)), motion(layers.motion(i).x, -layers.motion(i).y);
+    EXPECT_NEAR(glm::length(motion), 2 * glm::length(p), 2e-3) << i;  // 2 pixels r 2 sin 30
+    EXPECT_GT(p.x * motion.y - p.y * motion.x, 0.0f) << i;            // counterclockwise
+  }
+}
+
+TEST(MotionLayers, OfAShearedMeshGrowWithItsHeight) {
+  SceneData scene = wall_scene();
+  scene.meshes[0].end_positions = scene.meshes[0].positions;
+  for (Vec3& p : scene.meshes[0].end_positions) p.x += 0.75f * p.y;
+  const MotionLayers layers(scene, 24, 16);
+  for (std::size_t i = 0; i < layers.count(); ++i)
+    expect_near(layers.motion(i), {2 * 0.75f * layers.position(i).y, 0}, i);
+}
+
+TEST(MotionLayers, AreZeroWhereNothingMovesOrNothingIsSeen) {
+  SceneData scene = wall_scene();
+  const MotionLayers still(scene, 24, 16);
+  scene.meshes.push_back(square_of(-1, 1, -1, 1, 1, 0, 1));
+  scene.instances = {{1, {}}};
+  scene.motion.instances = {{0, {{0.0f, {}}, {1.0f, translate({1, 0, 0})}}}};
+  const MotionLayers beside(scene, 24, 16);
+  std::size_t moving = 0;
+  for (std::size_t i = 0; i < still.count(); ++i) {
+    EXPECT_EQ(still.motion(i), Vec2(0.0f));
+    if (beside.position(i).z < 0.5f) {
+      EXPECT_EQ(beside.motion(i), Vec2(0.0f)) << i;
+    } else {
+      expect_near(beside.motion(i), {20.0f / 9, 0}, i), ++moving;
+    }
+  }
+  EXPECT_GT(moving, 10u);
+  SceneData passed = wall_scene();  // by the camera, which then has it behind
+  passed.motion.camera = {{0.0f, translate({0, 0, 10})}, {1.0f, translate({0, 0, -30})}};
+  const MotionLayers behind(passed, 24, 16);
+  std::size_t hits = 0;
+  for (std::size_t i = 0; i < behind.count(); ++i) {
+    hits += behind.is_hit(i);
+    EXPECT_EQ(behind.motion(i), Vec2(0.0f)) << i;
+  }
+  EXPECT_GT(hits, 10u);
 }
 
 TEST(MotionImages, AreTheSameInAllModesAndStructures) {

@@ -387,6 +387,14 @@ class Motion(TestCase):
             strict.render(**options)
         self.assert_same_bits(scene.render(), ptexp.render(self.room(place=PLACES)))
 
+    def test_layers_of_motion(self):
+        scene = ptexp.load(self.room())
+        scene.params["instances.0.to_world"] = self.moving()
+        layer = scene.render(aov=("motion", "depth")).aovs["motion"]
+        self.assertEqual(layer.shape, (24, 32, 2))
+        self.assertGreater(np.abs(layer).max(), 1)
+        self.assertFalse(layer[-1].any())  # the floor
+
 
 class Dictionaries(TestCase):
     def scene(self, **shape):

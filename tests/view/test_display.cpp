@@ -136,6 +136,8 @@ TEST(Display, WhereNothingIsHitThereIsNoDepth) {
 TEST(Display, PositionsAreOfTheirOwnBox) {
   const Image image = with_layer("position", "XYZ", {10, -5, 3, 20, 5, 3, 12, -3, 3});
   EXPECT_EQ(bytes_of(image, {"position"}), std::string("\x00\x00\x00\xff\xff\x00\x33\x33\x00", 9));
+  EXPECT_EQ(bytes_of(with_layer("motion", "XY", {10, -5, 20, 5, 12, -3}), {"motion"}),
+            std::string("\x00\x00\x00\xff\xff\x00\x33\x33\x00", 9));
 }
 
 TEST(Display, EqualIndicesHaveOneColour) {

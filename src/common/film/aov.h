@@ -74,6 +74,10 @@ struct MaterialIndex {
   static constexpr const char *name = "material", *channels = "I";
   static PT_HD std::uint32_t of(const FirstHit& hit) { return hit.material; }
 };
+struct Motion {
+  static constexpr const char *name = "motion", *channels = "XY";
+  static PT_HD Vec2 of(const FirstHit& hit) { return hit.motion; }
+};
 struct Variance {
   static constexpr const char *name = "variance", *channels = "Y";
   static float of(const PixelStatistics& s) { return static_cast<float>(s.variance); }
@@ -94,9 +98,10 @@ struct Rays {
 }  // namespace aov
 
 /// Every AOV, once. Its index is its bit in ImageSettings::aovs.
-using Aovs = TypeList<aov::Albedo, aov::ShadingNormal, aov::Normal, aov::Depth, aov::Position,
-                      aov::Uv, aov::Primitive, aov::Instance, aov::MaterialIndex, aov::Variance,
-                      aov::Samples, aov::Bounces, aov::Rays, aov::Collision, aov::Transmittance>;
+using Aovs =
+    TypeList<aov::Albedo, aov::ShadingNormal, aov::Normal, aov::Depth, aov::Position, aov::Uv,
+             aov::Primitive, aov::Instance, aov::MaterialIndex, aov::Variance, aov::Samples,
+             aov::Bounces, aov::Rays, aov::Collision, aov::Transmittance, aov::Motion>;
 static_assert(Aovs::size <= 32);
 
 /// The source of an AOV.

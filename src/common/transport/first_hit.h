@@ -12,7 +12,8 @@ namespace pt {
 
 /// The first surface with a BSDF: camera rays go through boundaries of media.
 struct FirstHit {
-  float distance = 0.0f;  ///< along the ray, in scene units
+  /// Along the ray, in scene units; of what moves, along that of the middle of the interval.
+  float distance = 0.0f;
   /// To the path's collision with a medium before that, if it has one.
   float collision = 0.0f;
   Color transmittance = Color(1.0f);  ///< of the media before the surface; estimated
@@ -21,6 +22,7 @@ struct FirstHit {
   Vec3 shading_normal = Vec3(0.0f);
   Vec2 uv = Vec2(0.0f);  ///< v from a texture's head downwards, as in files
   Color albedo = Color(0.0f);
+  Vec2 motion = Vec2(0.0f);  ///< pixels, while the shutter is open; 0 for what leaves the view
   std::uint32_t primitive = no_primitive;  ///< spheres, then quads, then triangles, as loaded
   std::uint32_t instance = no_primitive;
   std::uint32_t material = no_primitive;
@@ -129,6 +131,31 @@ PT_HD ViewThroughMedia look_through_media(const Scene& scene, const Ray& camera_
   }
 }
 
+/// How the image of the point that was hit at `time` moves while the shutter is open.
+template <class Traits>
+PT_HD Vec2 motion_of(const Scene& scene, const Ray& ray, const Hit& hit, const Vec3& position,
+                     float time) {
+  Vec3 begin = position, end = position;
+  if (hit.primitive >= scene.primitives.count()) {
+    const std::uint32_t slot = hit.primitive - scene.primitives.count();
+    const bool placed = is_placed<Traits>(scene);
+    InstanceRecord instance;
+    if (placed) instance = instance_at<Traits>(scene, hit.instance, time);
+    const Vec3 b = barycentric_at(placed ? object_ray(instance, ray) : ray,
+                                  triangle_of<Traits>(scene, slot, time));
+    const auto place_at = [&](float then) {
+      const Triangle triangle = triangle_of<Traits>(scene, slot, then);
+      const Vec3 p = weighted_sum(b, triangle.v0, triangle.v1, triangle.v2);
+      return placed ? to_world_at<Traits>(scene, instance.index, then).point(p) : p;
+    };
+    begin = place_at(0.0f), end = place_at(1.0f);
+  }
+  Vec2 from, to;
+  const bool is_seen = film_position(camera_at(scene, 0.0f), begin, from) &&
+                       film_position(camera_at(scene, 1.0f), end, to);
+  return is_seen ? to - from : Vec2(0.0f);
+}
+
 /// The first hit of the camera ray that the path `id` has.
 template <class Traits, class Source>
 PT_HD FirstHit first_hit_of_path(const Scene& scene, const Source& source, const PathId& id,
@@ -139,12 +166,17 @@ PT_HD FirstHit first_hit_of_path(const Scene& scene, const Source& source, const
   PathState path;
   set_time<Traits>(scene, id, path);
   if constexpr (Traits::has_motion) {
-    const Camera camera = camera_at(scene, path.time);
-    const Ray ray = generate_camera_path(scene, camera, id.pixel, u);
+    const Ray ray = generate_camera_path(scene, camera_at(scene, path.time), id.pixel, u);
     const Hit hit = intersect_closest<Traits>(scene, ray, 0, path.time);
     FirstHit first =
         first_hit<ShadingTraits<Traits>>(scene, ray, hit, random.draw(scatter_block(1)), path.time);
-    if (!hit.is_miss()) first.distance += camera.distance_of_near_plane(ray.direction);
+    if (!hit.is_miss())
+      first.motion = motion_of<Traits>(scene, ray, hit, first.position, path.time);
+    const Camera middle = camera_at(scene, 0.5f);
+    const Ray middle_ray = generate_camera_path(scene, middle, id.pixel, u);
+    const Hit seen = intersect_closest<Traits>(scene, middle_ray, 0, 0.5f);
+    first.distance =
+        seen.is_miss() ? 0.0f : seen.t + middle.distance_of_near_plane(middle_ray.direction);
     first.collision = first.distance;
     return first;
   }

@@ -138,6 +138,24 @@ PT_HD Camera moved(Camera camera, const Affine& pose) {
   return camera;
 }
 
+/// The film position, in pixels, of a point as seen through the middle of the lens; false for one
+/// that is not before the camera.
+PT_HD bool film_position(const Camera& camera, const Vec3& point, Vec2& position) {
+  const auto volume = [](const Vec3& a, const Vec3& b, const Vec3& c) {
+    return dot(a, glm::cross(b, c));
+  };
+  // Of a multiple of `axis` and the steps it is the way to the point.
+  const bool parallel = camera.is_orthographic;
+  const Vec3 axis = parallel ? camera.forward : camera.corner;
+  const Vec3 way = point - camera.origin - (parallel ? camera.corner : Vec3(0.0f));
+  const float whole = volume(axis, camera.step_x, camera.step_y);
+  const float along = volume(way, camera.step_x, camera.step_y) / whole;
+  if (!(along > 0.0f)) return false;
+  const Vec2 steps(volume(axis, way, camera.step_y), volume(axis, camera.step_x, way));
+  position = steps / (parallel ? whole : along * whole);
+  return true;
+}
+
 /// The ray through film position (x, y), in pixels; `u` in [0, 1)^2 chooses the point of the lens.
 /// `specialized`: the camera is none of parallel rays.
 template <bool specialized = false>
