@@ -124,6 +124,11 @@ constexpr Key keys[] = {
        c.exposure = static_cast<float>(number(v, key, -100, 100));
      }},
     {"curve", [](const Json& v, Text, SettingsChange& c) { c.curve = read_curve(v); }},
+    {"time",
+     [](const Json& v, Text key, SettingsChange& c) {
+       c.time.emplace();
+       if (!v.is_null()) c.time->emplace(static_cast<float>(number(v, key, -1e9, 1e9)));
+     }},
     {"parameters", [](const Json& v, Text, SettingsChange& c) {
        c.resets_parameters = v.is_null();
        if (!v.is_null()) c.parameters = read_parameters(v);

@@ -103,6 +103,7 @@ struct SettingsChange {
   std::optional<std::string> layer;
   std::optional<float> exposure;  ///< stops
   std::optional<ToneCurve> curve;
+  std::optional<std::optional<float>> time;  ///< seconds, that of what moves; none: all of them
   ParameterValues parameters;
   bool resets_parameters = false;  ///< before those are set
 };

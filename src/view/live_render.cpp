@@ -197,6 +197,7 @@ LiveRender::LiveRender(std::vector<Setting> settings, const Warn& warn)
     state_.display.exposure = exposure.stops;
   }
   camera_ = scene.camera;
+  if (scene.moves()) shutter_ = scene.motion.shutter;
   override_camera(camera_, asked.options.camera);
   size_ = {command_.options.width, command_.options.height};
   crop_ = command_.options.crop;
@@ -235,6 +236,7 @@ void LiveRender::end() {
 void LiveRender::change(LiveSettings settings) {
   const std::lock_guard lock(mutex_);
   if (settings.size == ImageSize()) settings.size = size_;
+  if (settings.time && !shutter_) throw Error("\"time\": nothing moves in this scene");
   check_parameters(settings.parameters);
   if (settings == state_.settings) return;
   std::vector<LiveView> views;
@@ -354,10 +356,11 @@ bool LiveRender::has_work() const {
 ImageMetadata LiveRender::header_of(const LiveView& view) const {
   const LiveSettings& settings = view.image_settings;
   const CameraParameters camera = orbit_camera(camera_, settings.orbit);
-  const bool is_told =
-      settings.parameters.empty() && !(camera.orthographic && settings.orbit.zoom != 1);
+  const bool is_told = settings.parameters.empty() && !settings.time &&
+                       !(camera.orthographic && settings.orbit.zoom != 1);
   if (!is_told) {
     std::string text = camera_options(camera);
+    if (settings.time) text += fmt::format(" time={}", *settings.time);
     for (const auto& [name, values] : settings.parameters)
       text += fmt::format(" {}={}", name, fmt::join(values, ","));
     return {{"ptexp.view", command_.options.scene + " " + text}};
@@ -445,6 +448,7 @@ void LiveRender::arrange_workers(const Task& task) {
     Options& options = worker.command.options;
     options.aovs = task.aovs;
     if (options.sampler == SamplerKind::stratified) options.spp = task.spp;
+    worker.session->show_instant(task.settings.time);
     worker.session->change_camera() = orbit_camera(camera_, task.settings.orbit);
     const Options& last = before.options;
     const bool is_planned = worker.decision.option == "mode" && last.mode == options.mode &&

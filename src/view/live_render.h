@@ -27,6 +27,7 @@ struct LiveSettings {
   Orbit orbit;
   ImageSize size{};              ///< before `scale`; {0, 0}: the first one
   double scale = 1;              ///< scale_min to scale_max
+  std::optional<float> time{};   ///< seconds: what moves stands as it is then
   ParameterValues parameters{};  ///< those that are not as the scene has them
 
   bool operator==(const LiveSettings&) const = default;
@@ -132,7 +133,8 @@ class LiveRender {
   // These do not change.
   const std::string& scene() const { return command_.options.scene; }
   const std::string& device() const { return device_; }
-  const CameraParameters& camera() const { return camera_; }  ///< at rest
+  const CameraParameters& camera() const { return camera_; }          ///< at rest
+  const std::optional<Shutter>& shutter() const { return shutter_; }  ///< none: nothing moves
   const std::vector<LiveParameter>& parameters() const { return parameters_; }
 
   /// The header of a file of the view's image: its options, by which ptexp renders it again; or
@@ -166,6 +168,7 @@ class LiveRender {
   const Warn warn_;
   RenderCommand command_;    ///< of the first mode, with the scene's defaults
   CameraParameters camera_;  ///< at rest
+  std::optional<Shutter> shutter_;
   std::string device_, source_hash_;
   DeviceChoice device_choice_;
   SceneDefaults defaults_;

@@ -187,7 +187,17 @@ function show_settings() {
   $("exposure").disabled = $("curve").disabled = state.layer !== "color";
   $("pause").textContent = state.paused ? "go on" : "pause";
   $("pause").setAttribute("aria-pressed", state.paused);
+  show_time(state.time);
   show_parameters();
+}
+
+function show_time(time) {
+  $("motion").hidden = !state.shutter;
+  if (!state.shutter) return;
+  [$("time").min, $("time").max] = state.shutter;
+  $("time").value = time ?? state.shutter[0];
+  $("seconds").textContent = time === null ? "" : `${time.toPrecision(3)} s`;
+  $("blur").setAttribute("aria-pressed", time === null);
 }
 
 function status_text() {
@@ -378,6 +388,12 @@ for (const id of ["mode", "layer", "curve"])
   $(id).addEventListener("change", () => send({[id]: $(id).value}));
 $("scale").addEventListener("change", () => send({scale: Number($("scale").value)}));
 $("spp").addEventListener("change", () => send({spp: Number($("spp").value)}));
+function set_time(time) {
+  show_time(time);
+  send({time});
+}
+$("time").addEventListener("input", () => set_time(Number($("time").value)));
+$("blur").addEventListener("click", () => set_time(null));
 for (const id of ["width", "height"])
   $(id).addEventListener("change",
                          () => send({size: [Number($("width").value), Number($("height").value)]}));

@@ -101,6 +101,9 @@ std::string state_json(const LiveState& state, const LiveRender& live) {
        {"mode", mode_name(settings.modes)},
        {"size", {settings.size.width, settings.size.height}},
        {"scale", settings.scale},
+       {"shutter",
+        live.shutter() ? OrderedJson{live.shutter()->open, live.shutter()->close} : OrderedJson()},
+       {"time", settings.time ? OrderedJson(*settings.time) : OrderedJson()},
        {"paused", state.is_paused},
        {"layer", state.display.layer},
        {"exposure", state.display.exposure},
@@ -271,6 +274,7 @@ HttpReply ViewSite::settings(const HttpRequest& request) {
     settings.modes = change.modes.value_or(settings.modes);
     settings.size = change.size.value_or(settings.size);
     settings.scale = change.scale.value_or(settings.scale);
+    settings.time = change.time.value_or(settings.time);
     if (change.resets_parameters) settings.parameters.clear();
     for (const auto& [name, values] : change.parameters) settings.parameters[name] = values;
     live_.change(std::move(settings));

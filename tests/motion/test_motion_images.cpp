@@ -296,6 +296,33 @@ SceneData room_at(float time) {
   return scene;
 }
 
+TEST(MotionImages, AtAnInstantAreThoseOfTheRoomThen) {
+  for (const float time : {-3.0f, 0.0f, 0.3f, 0.75f, 1.0f, 9.0f}) {
+    SceneData held = moving_room();
+    held.motion.shutter = {2, 4};
+    for (auto& moving : held.motion.instances)
+      for (TransformKey& key : moving.keys) key.time = 2 + 2 * key.time;
+    for (TransformKey& key : held.motion.camera) key.time = 2 + 2 * key.time;
+    hold_still_at(held, 2 + 2 * time);
+    const SceneData room = room_at(std::clamp(time, 0.0f, 1.0f));
+    EXPECT_FALSE(held.moves());
+    const auto expect_close = [&](const Vec3& a, const Vec3& b, const char* what) {
+      EXPECT_LT(glm::length(a - b), 1e-5f) << what << " at " << time;
+    };
+    for (std::size_t i = 0; i < room.instances.size(); ++i)
+      for (const Vec3 p : {Vec3(0.0f), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)})
+        expect_close(held.instances[i].to_world.point(p), room.instances[i].to_world.point(p),
+                     "instance");
+    for (std::size_t i = 0; i < 4; ++i) {
+      expect_close(held.meshes[3].positions[i], room.meshes[3].positions[i], "vertex");
+      expect_close(held.meshes[3].normals[i], room.meshes[3].normals[i], "normal");
+    }
+    expect_close(held.camera.look_from, room.camera.look_from, "camera");
+    expect_close(normalize(held.camera.look_at - held.camera.look_from),
+                 normalize(room.camera.look_at - room.camera.look_from), "view");
+  }
+}
+
 TEST(MotionImages, AreTheMeanOfScenesThatStandStill) {
   Options options = motion_options(32, 24, 32, 3);
   const auto render_moving = [&](std::uint64_t seed) {

@@ -27,7 +27,7 @@ TEST(ChangeSettings, ReadsWhatIsThere) {
   EXPECT_EQ(change.exposure, 1.5f);
   const SettingsChange none = read_change("{}");
   EXPECT_FALSE(none.orbit || none.modes || none.size || none.scale || none.spp || none.is_paused ||
-               none.layer || none.exposure || none.curve || none.resets_parameters);
+               none.layer || none.exposure || none.curve || none.time || none.resets_parameters);
   EXPECT_TRUE(none.parameters.empty());
   const SettingsChange rest = read_change(
       R"({"size": [640, 480], "scale": 0.5, "spp": 99, "paused": true, "layer": "depth",
@@ -41,6 +41,8 @@ TEST(ChangeSettings, ReadsWhatIsThere) {
   EXPECT_EQ(rest.parameters, (ParameterValues{{"a.b", {2}}, {"c.d", {1, 2.5f, -3}}}));
   EXPECT_FALSE(rest.resets_parameters);
   EXPECT_TRUE(read_change(R"({"parameters": null})").resets_parameters);
+  EXPECT_EQ(read_change(R"({"time": 0.25})").time.value(), std::optional(0.25f));
+  EXPECT_FALSE(read_change(R"({"time": null})").time.value().has_value());
   EXPECT_EQ(read_change(R"({"mode": "serial"})").modes, std::vector{Mode::serial});
 }
 
@@ -52,6 +54,7 @@ TEST(ChangeSettings, NamesTheKeyAndWhatWasExpected) {
       {R"({"exposure": "1"})", "\"exposure\": expected a number from -100 to 100"},
       {R"({"exposure": 101})", "\"exposure\": expected a number from -100 to 100"},
       {R"({"exposure": 1e999})", "settings: expected a JSON object"},
+      {R"({"time": "now"})", "\"time\": expected a number from -1000000000 to 1000000000"},
       {R"({"orbit": 1})", "\"orbit\": expected an object with \"yaw\", \"pitch\" and \"zoom\""},
       {R"({"orbit": {"zoom": 0}})", "\"zoom\": expected a number from 0.001 to 1000"},
       {R"({"orbit": {"pitch": null}})", "\"pitch\": expected a number from -180 to 180"},
@@ -62,7 +65,8 @@ TEST(ChangeSettings, NamesTheKeyAndWhatWasExpected) {
        "\"mode\": expected one of auto, serial, megakernel, wavefront, split"},
       {R"({"scene": "x"})",
        "\"scene\": no such key; expected one of \"orbit\", \"mode\", \"size\", \"scale\", "
-       "\"spp\", \"paused\", \"layer\", \"exposure\", \"curve\", \"parameters\""},
+       "\"spp\", \"paused\", \"layer\", \"exposure\", \"curve\", \"time\", "
+       "\"parameters\""},
       {R"({"size": [640]})", "\"size\": expected width and height, such as [640, 480]"},
       {R"({"size": 640})", "\"size\": expected width and height, such as [640, 480]"},
       {R"({"size": [640.5, 3]})", "\"size\": expected a whole number from 1 to 8192"},

@@ -969,6 +969,42 @@ class InBrowser(Program):
         wait_for(lambda: tab.pixels() == rest, "the first image")
         self.assert_no_problems()
 
+    def test_the_time_of_what_moves(self):
+        scene = """Camera "perspective" "float fov" 50 Film "rgb" "integer xresolution" 64 "integer yresolution" 48
+            PixelFilter "box" WorldBegin LightSource "infinite" "rgb L" [0.5 0.5 0.5] Material "diffuse"
+            AttributeBegin %s Shape "trianglemesh" "point3 P" [-1 -1 5 1 -1 5 0 1 5] "integer indices" [0 1 2] AttributeEnd"""
+        with tempfile.TemporaryDirectory() as folder:
+            def image(transforms):
+                file = Path(folder) / "scene.pbrt"
+                file.write_text(scene % transforms, encoding="utf-8")
+                subprocess.run([PTEXP, "--scene", file, *SMALL, "--spp", "4", "-o", f"{folder}/a.png"],
+                               check=True, capture_output=True, timeout=TIMEOUT_S)
+                return read_png(Path(folder, "a.png").read_bytes())
+            halfway, end = image("Translate 0.5 0 0"), image("Translate 1 0 0")
+            blurred = image("ActiveTransform EndTime Translate 1 0 0 ActiveTransform All")
+            self.assertEqual(len({halfway, end, blurred}), 3)
+            self.start(spp="4", scene=f"{folder}/scene.pbrt")
+            tab = self.open()
+            wait_for(lambda: tab.samples() == [4], "the last sample on the page")
+            wait_for(lambda: tab.pixels() == blurred, "the blurred image")
+            self.assertFalse(tab.value('document.querySelector("#motion").hidden'))
+            for time_s, expected in ((0.5, halfway), (1, end)):
+                tab.choose("#time", time_s)
+                wait_for(lambda: self.peek()["time"] == time_s and tab.pixels() == expected, f"the image at {time_s} s")
+            self.assertEqual(tab.text("#seconds"), "1.00 s")
+            tab.picture("time-1280")
+            tab.click("#blur")
+            wait_for(lambda: self.peek()["time"] is None and tab.pixels() == blurred, "the blurred image again")
+        self.assert_no_problems()
+
+    def test_a_scene_that_stands_has_no_time(self):
+        self.start(spp="1")
+        tab = self.open()
+        wait_for(lambda: tab.samples() == [1], "the image")
+        self.assertTrue(tab.value('document.querySelector("#motion").hidden'))
+        status, _, body = self.ask("settings", "POST", json.dumps({"time": 0.5}))
+        self.assertEqual((status, body), (400, b'"time": nothing moves in this scene\n'))
+
     def test_figures_of_the_divided_view(self):
         self.start("--width", "160", "--height", "120")
         tab = self.open()

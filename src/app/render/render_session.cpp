@@ -121,13 +121,28 @@ CameraParameters& RenderSession::change_camera() {
   return source_.camera;
 }
 
+void RenderSession::show_instant(std::optional<float> time) {
+  if (time == instant_) return;
+  instant_ = time;
+  prepared_.reset();
+}
+
+SceneData RenderSession::resolved_scene(const Options& options, const DeviceInfo& device,
+                                        const Warn& warn) const {
+  SceneData scene = source_;
+  if (instant_) hold_still_at(scene, *instant_);
+  hold_still_if_needed(scene, options, device, warn);
+  resolve_scene(scene, options);
+  return scene;
+}
+
 /// Prepares again what depends on the changes; the rendering is kept if it can take them over.
 /// False: the scene has to be prepared anew.
 bool RenderSession::update(Prepared& ready, const Options& options,
                            const std::vector<DeviceInfo>& devices, SceneChanges changes) const {
   SceneData& scene = ready.scene;
   const bool on_cuda = devices.front().properties.is_cuda;
-  if (source_.moves() &&
+  if (source_.moves() && !instant_ &&
       (!scene.moves() || !motion_obstacle(options, scene.properties, on_cuda).empty()))
     return false;  // whether it is blurred is to be decided again
   if (!resolve_changes(scene, source_, changes, options)) return false;
@@ -169,9 +184,7 @@ RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, co
   if (!next || next->keys.scene != keys.scene || !update(*next, options, devices, changes)) {
     next.reset();  // its memory is needed
     next = std::make_unique<Prepared>();
-    next->scene = source_;
-    hold_still_if_needed(next->scene, options, devices.front(), warn);
-    resolve_scene(next->scene, options);
+    next->scene = resolved_scene(options, devices.front(), warn);
     next->plans = plan_render(options, next->scene, devices);
     prepare_scene(next->scene, next->plans.front());
     describe_scene(next->scene, next->facts);  // goes through the tree
@@ -250,9 +263,7 @@ std::vector<Decision> RenderSession::plan(const RenderCommand& command) {
   Options options = command.options;
   const std::vector<DeviceInfo> devices = calibrated_devices(options, command.given, {});
   apply_defaults(source_.defaults, command.given, options);
-  SceneData scene = source_;
-  hold_still_if_needed(scene, options, devices.front(), {});
-  resolve_scene(scene, options);
+  const SceneData scene = resolved_scene(options, devices.front(), {});
   return plan_render(options, scene, devices).front().decisions;
 }
 

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,9 @@ class RenderSession {
   /// For changes of the camera, which keep the acceleration structure.
   CameraParameters& change_camera();
 
+  /// Shows what moves as it stands at a time, in seconds; none: as it moves.
+  void show_instant(std::optional<float> time);
+
   /// Renders by these options, which name the same scene. Writes no image. `stays_on_device`: a
   /// GPU's image stays there, which several devices cannot do. Throws Error and leaves the session
   /// as it was.
@@ -65,11 +69,15 @@ class RenderSession {
  private:
   struct Prepared;
 
+  /// A copy of the scene, resolved; held still if it is to be.
+  SceneData resolved_scene(const Options& options, const DeviceInfo& device,
+                           const Warn& warn) const;
   Prepared& prepare(const RenderCommand& command, const Warn& warn, ProcessClock& clock);
   bool update(Prepared& ready, const Options& options, const std::vector<DeviceInfo>& devices,
               SceneChanges changes) const;
 
   SceneData source_;
+  std::optional<float> instant_;
   SceneChanges changes_;  ///< since the last preparation
   std::unique_ptr<Prepared> prepared_;
 };

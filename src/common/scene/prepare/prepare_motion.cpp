@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
 #include "common/error/error.h"
 #include "common/scene/data/scene_data.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {
@@ -119,6 +121,32 @@ void prepare_motion(SceneData& scene) {
   }
   view.camera = tracks.camera;
   motion.prepared->update_view();
+}
+
+void hold_still_at(SceneData& scene, float time) {
+  prepare_motion(scene);
+  if (!scene.motion.prepared) return;
+  const Motion& motion = scene.motion.prepared->view;
+  const Shutter& shutter = scene.motion.shutter;
+  const float part = std::clamp((time - shutter.open) / (shutter.close - shutter.open), 0.0f, 1.0f);
+  for (const MotionData::MovingInstance& moving : scene.motion.instances)
+    scene.instances[moving.instance].to_world = motion.to_world(moving.instance, part);
+  if (motion.camera.moves()) {
+    const Affine way = pose_at(motion.segments, motion.camera, part) * motion.to_camera;
+    CameraParameters& camera = scene.camera;
+    camera.look_from = way.point(camera.look_from), camera.look_at = way.point(camera.look_at);
+    camera.up = way.vector(camera.up);
+  }
+  const auto mix = [part](std::vector<Vec3>& begin, const std::vector<Vec3>& end) {
+    for (std::size_t i = 0; i < end.size(); ++i) begin[i] += part * (end[i] - begin[i]);
+  };
+  for (Mesh& mesh : scene.meshes) {
+    mix(mesh.positions, mesh.end_positions), mix(mesh.normals, mesh.end_normals);
+    if (!mesh.end_normals.empty())
+      for (Vec3& normal : mesh.normals) normal = normalize(normal);
+  }
+  scene.motion.prepared.reset();
+  hold_still(scene);
 }
 
 void prepare_moving_lights(SceneData& scene) {

@@ -10,6 +10,10 @@ namespace pt {
 /// Leaves everything where its motion begins; before resolve_scene.
 void hold_still(SceneData& scene);
 
+/// Leaves everything where it is at a time, in seconds; before resolve_scene. Throws Error for a
+/// motion that is none.
+void hold_still_at(SceneData& scene, float time);
+
 /// Applies what the options say of the scene (camera, filter, multiple scattering), packs materials
 /// and media, and fills in SceneData::properties, on which a plan depends. Throws Error for an
 /// empty scene and for a camera, a medium or a material that cannot be rendered.
