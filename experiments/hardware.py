@@ -1,26 +1,38 @@
 #!/usr/bin/env python3
-"""Hardware: what does OptiX change about the wavefront's rays, and what do equal hits cost there?
+"""Hardware: what does OptiX change about rays and whole paths, and what do equal hits cost there?
 
-The wavefront traces its queues by our persistent warps or by OptiX, all other stages being the same;
-the host launches the waves in all rows, and no path is finished outside of them. `mrays_*` is rays
-and shadow rays per second of the stages that trace (10^6/s), `ratio_*` our tracer's time of the whole
-render divided by the row's. Images of `custom` are compared with ours first; those of `any-hit` and
-`built-in` may differ in some pixels. A GPU without RT cores (an H100 or H200 has none) runs OptiX by
-software: then a row says nothing of hardware.
+Four architectures: the wavefront traces its queues by our persistent warps or by OptiX, all other stages
+being the same; the megakernel is our own kernel or OptiX's ray generation program, which can also reorder
+its threads (`reorder`), as `--kernel sort` does in software. The host launches the waves in all rows, and no
+path is finished outside of them. `mrays_*` is rays and shadow rays per second of the stages that trace
+(10^6/s; wavefront), `ratio_*` our wavefront's time of the whole render divided by the row's, `registers` those
+of a thread of our megakernel (OptiX tells none; PTEXP_OPTIX_LOG=4 prints what it compiles). Images of all
+rows but `any-hit` and `built-in` are compared with ours first; those may differ in some pixels. A GPU without
+RT cores (an H100 or H200 has none) runs OptiX by software and reorders nothing: then a row says nothing of
+hardware.
 """
 import shlex
 import sys
 
 from lib import harness
 from lib.harness import Configuration, Experiment, Plot
+from lib.kernels import kernels_of
 from lib.ratios import ratio_labels, set_ratios
 from lib.scene_files import add_scene_files, scene_files, short_name
 
 BASE = "ours"
-VARIANTS = {BASE: "--accel cwbvh --schedule host --finish-paths 0",
-            "custom": "--accel optix --optix-hits custom",
-            "any-hit": "--accel optix --optix-hits any-hit",
-            "built-in": "--accel optix --optix-hits built-in"}
+WAVEFRONT = "--mode wavefront"
+MEGAKERNEL = "--mode megakernel"
+VARIANTS = {BASE: f"{WAVEFRONT} --accel cwbvh --schedule host --finish-paths 0",
+            "custom": f"{WAVEFRONT} --accel optix --optix-hits custom",
+            "any-hit": f"{WAVEFRONT} --accel optix --optix-hits any-hit",
+            "built-in": f"{WAVEFRONT} --accel optix --optix-hits built-in",
+            "megakernel loop": f"{MEGAKERNEL} --kernel loop",
+            "megakernel sort": f"{MEGAKERNEL} --kernel sort",
+            "megakernel custom": f"{MEGAKERNEL} --accel optix --optix-hits custom",
+            "megakernel custom, reorder": f"{MEGAKERNEL} --accel optix --optix-hits custom --reorder on",
+            "megakernel built-in": f"{MEGAKERNEL} --accel optix --optix-hits built-in",
+            "megakernel built-in, reorder": f"{MEGAKERNEL} --accel optix --optix-hits built-in --reorder on"}
 SCENES = ["statue:1M", "terrain:1M", "boxes", "instances:100K", "dial:16:0.5:closed"]
 QUICK = ["statue:3K", "instances:20"]
 PARTS = {"median": "median", "min": "max", "max": "min"}
@@ -45,11 +57,11 @@ def configurations(arguments, _device):
     size, spp = (24, 2) if arguments.quick else (arguments.size, arguments.spp)
     return [Configuration(
         f"{name}: {variant}",
-        f"--mode wavefront --scene {scene} --width {size} --height {size} --spp {spp} "
+        f"--scene {scene} --width {size} --height {size} --spp {spp} "
         f"--max-depth 8 --builder hploc {options}",
         {"panel": "", "series": variant, "x": name, "variant": variant,
-         **{f"mrays_{part}": "" for part in PARTS}, **ratio_labels()},
-        same_image=name if variant in (BASE, "custom") else "")
+         **{f"mrays_{part}": "" for part in PARTS}, **ratio_labels(), "registers": ""},
+        same_image="" if "any-hit" in options or "built-in" in options else name)
         for name, scene in scenes_of(arguments).items() for variant, options in VARIANTS.items()]
 
 
@@ -68,26 +80,28 @@ def finish(rows, _arguments):
         for part, time in PARTS.items():
             if milliseconds := traced_ms(row, time):
                 row[f"mrays_{part}"] = f"{1e-3 * rays / milliseconds:.6g}"
+        if kernel := kernels_of(row).get("megakernel"):
+            row["registers"] = str(kernel.registers)
 
 
 def conclude(rows, _arguments):
-    """For each scene: OptiX's speed by kind of hits, ours being 1."""
+    """For each scene: the variants' speed, our wavefront's being 1."""
     sentences = []
     for scene in dict.fromkeys(scene_of(row) for row in rows):
         ratios = [f"{row['variant']} {float(row['ratio_median']):.2f}" for row in rows
                   if scene_of(row) == scene and row["variant"] != BASE and row["ratio_median"]]
         if ratios:
-            sentences.append(f"{scene}: with OptiX a render is so many times as fast as with our tracer: "
+            sentences.append(f"{scene}: a render is so many times as fast as by our wavefront: "
                              + ", ".join(ratios))
     return sentences
 
 
 EXPERIMENT = Experiment(
     "hardware", __doc__.splitlines()[0], configurations,
-    Plot("bars", "Rays traced by OptiX and by our warps (an H100 or H200 has no RT cores)",
-         "scene", "million rays per second of tracing", y="mrays", log_y=False),
+    Plot("bars", "Renders with OptiX and without (an H100 or H200 has no RT cores)",
+         "scene", "times as fast as our wavefront", y="ratio", log_y=False),
     add_arguments=add_arguments, finish=finish, conclude=conclude, needs_gpu=True,
-    table=("mrays_median", "ratio_median"))
+    table=("mrays_median", "ratio_median", "registers"))
 
 if __name__ == "__main__":
     sys.exit(harness.main(EXPERIMENT))
