@@ -6,15 +6,15 @@ elseif(PTEXP_OPTIX STREQUAL "ON" AND NOT PTEXP_CUDA_FOUND)
   message(FATAL_ERROR "PTEXP_OPTIX=ON needs the CUDA device (PTEXP_CUDA)")
 endif()
 
-# ptexp_optix_module(TARGET SOURCE): TARGET may include <optix/NAME.inc>, the PTX of SOURCE as a string,
-# which is empty where no modules are built. Every OptiX that ptexp knows takes code for compute
+# ptexp_optix_module(TARGET SOURCE): TARGET may include <optix/NAME.inc>, the PTX of SOURCE by gzip as a
+# list of bytes, a single 0 where no modules are built. Every OptiX that ptexp knows takes code for compute
 # capability 7.5.
 function(ptexp_optix_module target source)
   cmake_path(GET source STEM name)
   set(output ${CMAKE_CURRENT_BINARY_DIR}/optix/${name}.inc)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
   if(NOT PTEXP_OPTIX_FOUND)
-    file(CONFIGURE OUTPUT ${output} CONTENT "\"\"\n")
+    file(CONFIGURE OUTPUT ${output} CONTENT "0\n")
     return()
   endif()
   add_library(ptexp_${name} OBJECT ${source})

@@ -1,6 +1,9 @@
 #include "megakernel/megakernel_cuda.h"
 
+#include "common/accel/trace_optix/optix_memory_cuda.h"
+#include "common/accel/trace_optix/optix_tracer.h"
 #include "megakernel/megakernel.h"
+#include "megakernel/optix_paths.h"
 
 namespace pt {
 
@@ -11,6 +14,39 @@ MegakernelCuda::MegakernelCuda(const ExecutionPlan& plan, const SceneData& scene
     CudaLauncher& launcher = *this;
     blocks_ = std::make_unique<BlockWavefronts>(launcher, memory_, traits_, plan_.path_bytes);
   }
+  make_optix();
+}
+
+MegakernelCuda::~MegakernelCuda() = default;
+
+void MegakernelCuda::make_optix() {
+  optix_.reset();  // its memory is needed
+  if (!plan_.traces_by_optix) return;
+  const OptixPathChoices choices{plan_.optix_hits, plan_.reorder};
+  optix_memory_ = std::make_unique<CudaOptixMemory>(stream());
+  optix_ = std::make_unique<OptixTracer>(*optix_memory_, scene_.triangles, plan_.optix_hits,
+                                         optix_path_module(choices));
+}
+
+bool MegakernelCuda::set_scene(const SceneData& scene, const SceneChanges& changes) {
+  if (!CudaRenderer::set_scene(scene, changes)) return false;
+  if (changes.move_surfaces()) make_optix();
+  return true;
+}
+
+void MegakernelCuda::describe(RenderReport& report) const {
+  CudaRenderer::describe(report);
+  if (optix_ != nullptr) optix_->describe(report, plan_.reorder);
+}
+
+void MegakernelCuda::launch_by_optix(const SamplerSource& source, const SampleBuffer& batch) {
+  enqueue_stamp(StageId::megakernel);
+  launch_paths(*optix_, plan_.work,
+               {.choices = {plan_.optix_hits, plan_.reorder},
+                .world = scene_,
+                .source = source,
+                .samples = batch,
+                .settings = path_settings_});
 }
 
 void MegakernelCuda::trace_batch(const SampleBuffer& batch) {
@@ -19,6 +55,7 @@ void MegakernelCuda::trace_batch(const SampleBuffer& batch) {
     using Source = std::remove_cvref_t<decltype(source)>;
     const SceneStorage<SceneMemory::global> in_global{scene_};
     if constexpr (std::is_same_v<Source, SamplerSource>) {
+      if (optix_ != nullptr) return launch_by_optix(source, batch);
       if (plan_.megakernel == MegakernelKind::vote) return launch_phase_voting(source, batch);
       if (blocks_ != nullptr)
         return blocks_->trace(scene_, batch, source, path_settings_, StageId::megakernel);

@@ -8,9 +8,14 @@
 
 namespace pt {
 
+class CudaOptixMemory;
+class OptixTracer;
+
 class MegakernelCuda : public CudaRenderer {
  public:
   MegakernelCuda(const ExecutionPlan& plan, const SceneData& scene, int device);
+  ~MegakernelCuda() override;
+  bool set_scene(const SceneData& scene, const SceneChanges& changes) override;
 
   /// Launches the kernel for this storage of the scene and this source of random numbers.
   template <SceneMemory memory, class Source>
@@ -21,8 +26,12 @@ class MegakernelCuda : public CudaRenderer {
   /// A branch in each thread on whether paths repeat cost all renders 4 to 11 % (results/).
   bool can_repeat_paths() const override { return false; }
   void trace_batch(const SampleBuffer& batch) override;
+  void describe(RenderReport& report) const override;
 
  private:
+  /// Builds what OptiX needs, where it runs the megakernel.
+  void make_optix();
+  void launch_by_optix(const SamplerSource& source, const SampleBuffer& batch);
   template <class Kernel>
   dim3 grid_size(Kernel kernel, dim3 block, std::size_t shared_bytes, const SampleBuffer& batch);
 
@@ -34,6 +43,8 @@ class MegakernelCuda : public CudaRenderer {
 
   std::uint32_t* next_path_ = nullptr;
   std::unique_ptr<BlockWavefronts> blocks_;  ///< only with --kernel sort
+  std::unique_ptr<CudaOptixMemory> optix_memory_;
+  std::unique_ptr<OptixTracer> optix_;  ///< only with --accel optix
 };
 
 }  // namespace pt

@@ -6,8 +6,9 @@
 #include <numeric>
 
 #include "common/accel/trace_optix/optix_memory_cuda.h"
+#include "common/accel/trace_optix/optix_tracer.h"
 #include "common/error/error.h"
-#include "wavefront/optix/optix_tracer.h"
+#include "wavefront/optix/optix_queue.h"
 #include "wavefront/wavefront.h"
 
 namespace pt {
@@ -47,24 +48,26 @@ void WavefrontCuda::make_optix() {
   optix_.reset();  // its memory is needed
   if (!plan_.traces_by_optix) return;
   optix_memory_ = std::make_unique<CudaOptixMemory>(stream());
-  optix_ = std::make_unique<OptixTracer>(*optix_memory_, scene_, has_masks_, plan_.optix_hits,
-                                         optix_queue_code());
+  optix_ = std::make_unique<OptixTracer>(*optix_memory_, scene_.triangles, plan_.optix_hits,
+                                         optix_queue_module());
 }
 
 void WavefrontCuda::trace_by_optix(StageId stage, const StageQueues& queues,
                                    const SampleBuffer& samples) {
-  const OptixQueue rays{queues.slots, queues.count};
-  if (stage == StageId::shadow)
-    return optix_->trace_shadow_queue(scene_, buffers_.pool, rays, samples);
-  optix_->trace_queue(scene_, buffers_.pool, rays, samples);
+  enqueue_stamp(stage);
+  pt::trace_by_optix(*optix_,
+                     stage == StageId::shadow ? OptixPipeline::any : OptixPipeline::closest,
+                     {.world = scene_,
+                      .has_masks = has_masks_,
+                      .pool = buffers_.pool,
+                      .slots = queues.slots,
+                      .count = queues.count,
+                      .samples = samples});
 }
 
 void WavefrontCuda::describe(RenderReport& report) const {
   CudaRenderer::describe(report);
-  if (optix_ == nullptr) return;
-  report.accel = "optix";
-  report.optix = optix_->facts();
-  report.memory.push_back({"OptiX's structures", report.optix->bytes_compacted});
+  if (optix_ != nullptr) optix_->describe(report, false);
 }
 
 void WavefrontCuda::allocate_pool(const SceneData& scene) {

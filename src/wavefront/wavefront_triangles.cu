@@ -26,24 +26,15 @@ void WavefrontCuda::run_persistent(const Rays& rays, StageId stage) {
          rays, stage, clock());
 }
 
-/// OptiX's launches read no clock: what has passed before belongs to others.
-__global__ void stamp_kernel(StageClock* clock, StageId stage) { stamp_first_thread(clock, stage); }
-
 void WavefrontCuda::trace_queue(const StageQueues& queues, const SampleBuffer& samples) {
-  if (optix_ != nullptr) {
-    launch("stamp", stamp_kernel, 1, 1, 0, clock(), StageId::intersect);
-    return trace_by_optix(StageId::intersect, queues, samples);
-  }
+  if (optix_ != nullptr) return trace_by_optix(StageId::intersect, queues, samples);
   QueuedPaths paths{{buffers_.pool, queues, &buffers_.counters->traced}};
   set_lanes(paths.rays, lanes_of(scene_));
   trace_persistently(paths, samples, StageId::intersect);
 }
 
 void WavefrontCuda::trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples) {
-  if (optix_ != nullptr) {
-    launch("stamp", stamp_kernel, 1, 1, 0, clock(), StageId::shadow);
-    return trace_by_optix(StageId::shadow, queues, samples);
-  }
+  if (optix_ != nullptr) return trace_by_optix(StageId::shadow, queues, samples);
   QueuedShadowRays shadows{{buffers_.pool, queues, &buffers_.counters->shadow_traced}, samples};
   set_lanes(shadows.rays, lanes_of(scene_));
   trace_persistently(shadows, samples, StageId::shadow);

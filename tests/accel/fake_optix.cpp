@@ -46,15 +46,22 @@ optix::Result context_property(optix::Context, int property, void* value, std::s
   if (bytes != sizeof(unsigned)) return 7001;
   const unsigned known = property == optix::property_max_primitives  ? fake.primitives_max
                          : property == optix::property_max_instances ? fake.instances_max
+                         : property == optix::property_reordering    ? fake.reordering
                                                                      : fake.rtcore_version;
   std::memcpy(value, &known, sizeof known);
   return 0;
 }
-optix::Result module_create(optix::Context, const optix::ModuleOptions*,
+optix::Result module_create(optix::Context, const optix::ModuleOptions* options,
                             const optix::PipelineOptions*, const char* code, std::size_t bytes,
                             char* log, std::size_t* log_bytes, optix::Module* module) {
   if (!begin("module_create")) return fail(log, log_bytes);
   fake.code.assign(code, bytes);
+  fake.constants.clear();
+  for (unsigned i = 0; i < options->bound_value_count; ++i) {
+    const optix::BoundValue& bound = options->bound_values[i];
+    fake.constants.resize(bound.offset);
+    fake.constants.append(static_cast<const char*>(bound.value), bound.bytes);
+  }
   *module = make<optix::Module>(&fake.code);
   return 0;
 }

@@ -220,8 +220,9 @@ void try_case(const OptixContext& context, CudaOptixMemory& memory, cudaStream_t
   std::unique_ptr<OptixPipeline> pipeline;
   if (!step("module, program groups, pipeline, records", [&] {
         const auto begin = std::chrono::steady_clock::now();
-        pipeline = std::make_unique<OptixPipeline>(context, memory, optix_ray_code(), hits,
-                                                   sizeof(OptixRayParams), tree.instance_count > 0);
+        const OptixModule module{optix_ray_code(), sizeof(OptixRayParams)};
+        pipeline =
+            std::make_unique<OptixPipeline>(context, memory, module, hits, tree.instance_count > 0);
         say(fmt::format("  {:.1f} ms", std::chrono::duration<double, std::milli>(
                                            std::chrono::steady_clock::now() - begin)
                                            .count()));

@@ -8,9 +8,8 @@
 #include "accel/instanced_meshes.h"
 #include "accel/tree_kinds.h"
 #include "accel/triangle_meshes.h"
-#include "common/accel/trace_optix/optix_pipeline.h"
 #include "common/accel/trace_optix/optix_rays.h"
-#include "common/accel/trace_optix/optix_structure.h"
+#include "common/accel/trace_optix/optix_tracer.h"
 #include "common/error/error.h"
 
 namespace pt {
@@ -27,17 +26,8 @@ void add_ray_generation(OptixPrograms& programs, const std::string& name) {
 }
 
 OptixPrograms ray_programs() {
-  using namespace optix;
-  OptixPrograms programs;
-  const auto scene = []() -> const OptixScene& { return ray_params->scene; };
-  programs["__intersection__closest"] = [=] {
-    intersect_closest_box<EmulatedApi, ClosestTriangle>(scene());
-  };
-  programs["__intersection__any"] = [=] { intersect_any_box<EmulatedApi, AnyTriangle>(scene()); };
-  programs["__anyhit__closest"] = [=] { accept_closest<EmulatedApi, ClosestTriangle>(scene()); };
-  programs["__anyhit__ties"] = [=] { judge_all<EmulatedApi, ClosestTriangle>(scene()); };
-  programs["__anyhit__any"] = [=] { accept_any<EmulatedApi, AnyTriangle>(scene()); };
-  programs["__closesthit__name"] = [=] { name_hit<EmulatedApi>(scene()); };
+  OptixPrograms programs = hit_programs<EmulatedApi, ClosestTriangle, AnyTriangle>(
+      []() -> const OptixScene& { return ray_params->scene; });
   add_ray_generation<OptixHits::custom>(programs, "custom");
   add_ray_generation<OptixHits::any_hit>(programs, "any_hit");
   add_ray_generation<OptixHits::built_in>(programs, "built_in");
@@ -55,7 +45,8 @@ struct World {
   World(TriangleTreeData tree, OptixHits hits)
       : data(std::move(tree)),
         structure(context, memory, data.view(), hits),
-        pipeline(context, memory, "code", hits, sizeof(OptixRayParams), !data.instances.empty()) {}
+        pipeline(context, memory, {"code", sizeof(OptixRayParams)}, hits, !data.instances.empty()) {
+  }
 
   std::vector<HitRecord> trace(const RaySet& set) {
     std::vector<HitRecord> hits(set.rays.size(), HitRecord{-7, 7});
@@ -147,12 +138,15 @@ TEST_P(Optix, FailsAtEachCallInOneLineAndLeavesNothing) {
   const TriangleTreeData tree = brute_kind.build(meshes.meshes, meshes.instances);
   fake_->run = nullptr;
   const auto use = [&](HostOptixMemory& memory) {
-    const OptixContext context(std::make_shared<const OptixLibrary>());
-    const OptixStructure structure(context, memory, tree.view(), GetParam());
-    OptixPipeline pipeline(context, memory, "code", GetParam(), 16, true);
     const char params[16] = {};
-    pipeline.launch(OptixPipeline::any, params, 1);
+    OptixTracer tracer(memory, tree.view(), GetParam(),
+                       {"code", 16, {"__raygen__paths"}, std::span(params).first(4)});
+    tracer.launch(OptixPipeline::paths, params, 1);
+    RenderReport report;
+    tracer.describe(report, true);
+    EXPECT_TRUE(report.optix->reorders);
   };
+  fake_->reordering = 1;
   HostOptixMemory memory;
   use(memory);
   const auto calls = fake_->calls;
@@ -183,11 +177,7 @@ TEST_P(Optix, FailsAtEachCallInOneLineAndLeavesNothing) {
 INSTANTIATE_TEST_SUITE_P(Hits, Optix,
                          testing::Values(OptixHits::custom, OptixHits::any_hit,
                                          OptixHits::built_in),
-                         [](const auto& test) {
-                           return test.param == OptixHits::custom    ? "custom"
-                                  : test.param == OptixHits::any_hit ? "any_hit"
-                                                                     : "built_in";
-                         });
+                         hits_name);
 
 std::string problem_of(const std::function<void()>& action) {
   try {
@@ -244,7 +234,7 @@ TEST(OptixPipeline, NeedsCode) {
   HostOptixMemory memory;
   const OptixContext context(std::make_shared<const OptixLibrary>());
   EXPECT_NE(problem_of([&] {
-              OptixPipeline(context, memory, "", OptixHits::custom, 16, false);
+              OptixPipeline(context, memory, {"", 16}, OptixHits::custom, false);
             }).find("built without programs"),
             std::string::npos);
 }
@@ -253,13 +243,44 @@ TEST(OptixPipeline, NamesWhatItsProgramsMeet) {
   UsedFakeOptix fake;
   HostOptixMemory memory;
   const OptixContext context(std::make_shared<const OptixLibrary>());
-  OptixPipeline(context, memory, "some code", OptixHits::custom, 16, false);
+  OptixPipeline(context, memory, {"some code", 16}, OptixHits::custom, false);
   EXPECT_EQ(fake->code, "some code");
   EXPECT_EQ(fake->pipeline.primitive_flags, optix::primitives_custom);
   EXPECT_EQ(fake->pipeline.graph_flags, optix::graph_single_gas);
-  OptixPipeline(context, memory, "some code", OptixHits::built_in, 16, true);
+  OptixPipeline(context, memory, {"some code", 16}, OptixHits::built_in, true);
   EXPECT_EQ(fake->pipeline.primitive_flags, optix::primitives_triangle);
   EXPECT_EQ(fake->pipeline.graph_flags, optix::graph_single_level_instancing);
+}
+
+TEST(OptixPipeline, RunsTheModulesOwnLaunchesAndKnowsItsConstants) {
+  UsedFakeOptix fake;
+  HostOptixMemory memory;
+  const OptixContext context(std::make_shared<const OptixLibrary>());
+  std::string launched;
+  fake->run = [&](const FakeOptix::Launch& launch) { launched = launch.raygen; };
+  const char params[] = {1, 2, 3, 4};
+  OptixPipeline own(context, memory, {"code", 4, {"__raygen__a", "__raygen__b"}, {params, 3}},
+                    OptixHits::any_hit, false);
+  EXPECT_EQ(fake->constants, std::string({1, 2, 3}));
+  own.launch(OptixPipeline::paths, params, 1);
+  EXPECT_EQ(launched, "__raygen__a");
+  own.launch(OptixPipeline::any, params, 1);
+  EXPECT_EQ(launched, "__raygen__b");
+  OptixPipeline usual(context, memory, {"code", 4}, OptixHits::any_hit, false);
+  EXPECT_EQ(fake->constants, "");
+  usual.launch(OptixPipeline::any, params, 1);
+  EXPECT_EQ(launched, "__raygen__any_any_hit");
+}
+
+TEST(OptixModule, IsUnpacked) {
+  // "OptiX\n" by gzip -n.
+  const unsigned char packed[] = {31,  139, 8,   0, 0, 0,   0, 0,   2,   255, 243, 47, 40,
+                                  201, 140, 224, 2, 0, 243, 0, 242, 135, 6,   0,   0,  0};
+  EXPECT_EQ(unpack_optix_code(packed), "OptiX\n");
+  EXPECT_EQ(unpack_optix_code(std::span(packed).first(1)), "");  // none was built
+  std::vector<unsigned char> damaged(std::begin(packed), std::end(packed));
+  damaged[12] ^= 1;
+  EXPECT_NE(problem_of([&] { unpack_optix_code(damaged); }).find("damaged"), std::string::npos);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@ namespace {
 
 TEST(OptixAbi, SizesAreThoseOfTheInterface) {
   EXPECT_EQ(sizeof(ContextOptions), 24u);
+  EXPECT_EQ(sizeof(BoundValue), 32u);
   EXPECT_EQ(sizeof(ModuleOptions), 40u);
   EXPECT_EQ(sizeof(PipelineOptions), 40u);
   EXPECT_EQ(sizeof(LinkOptions), 4u);
@@ -34,7 +35,10 @@ TEST(OptixAbi, SizesAreThoseOfTheInterface) {
 
 TEST(OptixAbi, MembersLieWhereTheInterfaceHasThem) {
   EXPECT_OFFSET(ContextOptions, log_level, 16);
+  EXPECT_OFFSET(BoundValue, bytes, 8);
+  EXPECT_OFFSET(BoundValue, annotation, 24);
   EXPECT_OFFSET(ModuleOptions, bound_values, 16);
+  EXPECT_OFFSET(ModuleOptions, bound_value_count, 24);
   EXPECT_OFFSET(ModuleOptions, payload_type_count, 28);
   EXPECT_OFFSET(PipelineOptions, exception_flags, 16);
   EXPECT_OFFSET(PipelineOptions, params_name, 24);

@@ -90,6 +90,7 @@ const std::map<std::string, std::string>& other_values() {
       {"block", "32x4"},
       {"kernel-set", "general"},
       {"optix-hits", "any-hit"},
+      {"reorder", "on"},
       {"order-surfaces", "on"},
       {"kernel", "vote"},
       {"compaction", "cub"},
@@ -122,10 +123,12 @@ std::vector<std::string> arguments_for(const OptionEntry& entry, const std::stri
   }
   if (entry.name == "animation" || entry.name == "shutter")
     arguments.insert(arguments.end(), {"--time", "1"});
-  if (entry.name == "optix-hits") arguments.insert(arguments.end(), {"--accel", "optix"});
+  if (entry.name == "optix-hits" || entry.name == "reorder")
+    arguments.insert(arguments.end(), {"--accel", "optix"});
   if (entry.name == "part") arguments.insert(arguments.end(), {"--checkpoint", "c.exr"});
   if (entry.name == "wave-rays") arguments.insert(arguments.end(), {"--stages", "fused"});
-  if (entry.name == "work" || entry.name == "block" || entry.name == "kernel")
+  if (entry.name == "work" || entry.name == "block" || entry.name == "kernel" ||
+      entry.name == "reorder")
     arguments.insert(arguments.end(), {"--mode", "megakernel"});
   return arguments;
 }
@@ -772,6 +775,9 @@ TEST(Refused, WithoutEffectInTheMode) {
   expect_refused({
       {"--mode wavefront --work pixel",
        "--work pixel: has no effect with --mode wavefront; it applies to megakernel"},
+      {"--mode wavefront --accel optix --reorder on",
+       "--reorder on: has no effect with --mode wavefront; it applies to megakernel"},
+      {"--mode megakernel --reorder on", "--reorder on: has no effect without --accel optix"},
       {"--mode wavefront --block 8x8", "--block 8x8: has no effect with --mode wavefront"},
       {"--mode wavefront --kernel loop", "--kernel loop: has no effect with --mode wavefront"},
       {"--kernel loop --compaction cub",

@@ -1,5 +1,6 @@
-// OptiX as a tracer of the wavefront's queues: where our test judges its candidates, images are
-// those of our own tracer, bit for bit. Skipped where the driver has no OptiX.
+// OptiX as a tracer of the wavefront's queues, and the megakernel in its ray generation program:
+// where our test judges its candidates, images are those of our own tracer, bit for bit. Skipped
+// where the driver has no OptiX.
 #include <fmt/format.h>
 
 #include <iostream>
@@ -84,10 +85,32 @@ TEST_P(CudaOptixModes, GiveTheImagesOfOurTracer) {
   }
 }
 
-Rendered render_room(SceneData scene, const Settings& settings) {
-  Options options = cuda_options(
-      "wavefront",
-      {{"width", "91"}, {"height", "83"}, {"spp", "4"}, {"max-depth", "6"}, {"pool-size", "3001"}});
+TEST_P(CudaOptixModes, GiveTheImagesOfOurMegakernel) {
+  const Options usual = cuda_options("megakernel", {{"scene", GetParam()},
+                                                    {"width", "131"},
+                                                    {"height", "97"},
+                                                    {"spp", "4"},
+                                                    {"max-depth", "6"},
+                                                    {"kernel-set", "general"}});
+  const Rendered expected = render_options(usual);
+  expect_plausible(expected, usual);
+  for (const char* hits : {"custom", "any-hit", "built-in"}) {
+    for (const char* reorder : {"off", "on"}) {
+      for (const char* work : {"persistent", "pixel", "sample"}) {
+        SCOPED_TRACE(fmt::format("{}, reorder {}, work {}", hits, reorder, work));
+        const Options options =
+            with(usual,
+                 {{"accel", "optix"}, {"optix-hits", hits}, {"reorder", reorder}, {"work", work}});
+        expect_images(GetParam(), hits, render_options(options), expected);
+      }
+    }
+  }
+}
+
+Rendered render_room(SceneData scene, const Settings& settings, const char* mode = "wavefront") {
+  Options options =
+      cuda_options(mode, {{"width", "91"}, {"height", "83"}, {"spp", "4"}, {"max-depth", "6"}});
+  if (options.mode == Mode::wavefront) apply(options, {{"pool-size", "3001"}});
   apply(options, settings);
   prepare_scene(scene, options);
   return take_image(*make_renderer(options, scene, choose_device(options.device)));
@@ -110,6 +133,25 @@ TEST_F(CudaOptix, GivesTheRoomsOfOurTracer) {
       SCOPED_TRACE(std::string(name) + ", " + hits);
       expect_images(name, hits, render_room(scene, {{"accel", "optix"}, {"optix-hits", hits}}),
                     expected);
+    }
+  }
+}
+
+TEST_F(CudaOptix, GivesTheRoomsOfOurMegakernel) {
+  SceneData lights = lit_room();
+  lights.spheres.clear(), lights.sphere_material.clear();
+  const std::pair<const char*, SceneData> rooms[] = {{"lights", lights},
+                                                     {"materials", material_room(false)},
+                                                     {"masks", masked_room()},
+                                                     {"limited", limited_room()}};
+  for (const auto& [name, scene] : rooms) {
+    const Rendered expected = render_room(scene, {}, "megakernel");
+    for (const char* hits : judged) {
+      for (const char* reorder : {"off", "on"}) {
+        SCOPED_TRACE(fmt::format("{}, {}, reorder {}", name, hits, reorder));
+        const Settings settings{{"accel", "optix"}, {"optix-hits", hits}, {"reorder", reorder}};
+        expect_images(name, hits, render_room(scene, settings, "megakernel"), expected);
+      }
     }
   }
 }
@@ -138,6 +180,22 @@ TEST_F(CudaOptix, SaysWhatItHasBuilt) {
             << ", " << report.optix->build_ms << " ms\n";
 }
 
+TEST_F(CudaOptix, SaysWhetherItHasReordered) {
+  const auto report = [](const char* reorder) {
+    return report_of(cuda_options("megakernel", {{"scene", "statue:3K"},
+                                                 {"width", "32"},
+                                                 {"height", "32"},
+                                                 {"spp", "1"},
+                                                 {"accel", "optix"},
+                                                 {"reorder", reorder}}));
+  };
+  const RenderReport asked = report("on");
+  EXPECT_EQ(asked.accel, "optix");
+  ASSERT_TRUE(asked.optix.has_value());
+  EXPECT_EQ(asked.optix->reorders, choose_device({}).properties.can_reorder);
+  EXPECT_FALSE(report("off").optix->reorders);
+}
+
 /// Rays traced by OptiX.
 std::vector<HitRecord> trace_by_optix(const TriangleTreeData& data, const RaySet& set,
                                       OptixHits hits) {
@@ -153,7 +211,7 @@ std::vector<HitRecord> trace_by_optix(const TriangleTreeData& data, const RaySet
   const TriangleTree tree =
       data.view([&](auto*& pointer, const auto& values, const char*) { pointer = upload(values); });
   const OptixStructure structure(context, memory, tree, hits);
-  OptixPipeline pipeline(context, memory, optix_ray_code(), hits, sizeof(OptixRayParams),
+  OptixPipeline pipeline(context, memory, {optix_ray_code(), sizeof(OptixRayParams)}, hits,
                          tree.instance_count > 0);
   OptixRayParams params;
   params.scene = optix_scene(tree, structure);

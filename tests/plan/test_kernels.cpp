@@ -17,7 +17,7 @@ TEST(Kernels, EachOfTheCpuRenders) { render_by_each_kernel(false); }
 template <class Function>
 void for_each_need(EnumSet<Content> contents, Function&& function) {
   for (const bool on_cuda : {false, true})
-    for (int body = 0; body < 7; ++body)
+    for (int body = 0; body < 8; ++body)
       for (int accel = 0; accel < 5; ++accel)
         for (int source = 0; source < 3; ++source)
           for (int memory = 1; memory < 4; ++memory)
@@ -78,7 +78,7 @@ TEST(Kernels, ARefusalNamesAKernelOfTheSameScene) {
                                 : EnumSet{NumberSource::philox, NumberSource::sampler};
           } else {  // of a body
             other.bodies = {};
-            for (int body = 0; body < 7; ++body)
+            for (int body = 0; body < 8; ++body)
               for (const auto& [name, its] : settings_of(KernelBody{body}))
                 if ("--" + name == option && its == value)
                   other.bodies = other.bodies | KernelBody{body};

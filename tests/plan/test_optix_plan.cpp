@@ -62,6 +62,76 @@ TEST(OptixPlan, TracesTheQueuesOfWavesThatTheHostLaunches) {
   EXPECT_EQ(reasons["schedule"], "a launch of OptiX is not recorded in a graph");
 }
 
+std::map<std::string, Decision> decisions_of(const ExecutionPlan& plan) {
+  std::map<std::string, Decision> decisions;
+  for (const Decision& one : plan.decisions) decisions[one.option] = one;
+  return decisions;
+}
+
+TEST(OptixPlan, RunsTheMegakernel) {
+  const ExecutionPlan plan = optix_plan({{"mode", "megakernel"}});
+  EXPECT_TRUE(plan.traces_by_optix);
+  EXPECT_EQ(plan.mode, Mode::megakernel);
+  EXPECT_EQ(plan.megakernel, MegakernelKind::loop);
+  EXPECT_EQ(plan.accel, Accel::cwbvh);
+  EXPECT_FALSE(plan.reorder);
+  const auto decisions = decisions_of(plan);
+  EXPECT_EQ(decisions.at("kernel").value, "loop");
+  EXPECT_EQ(decisions.at("kernel").reason, "in OptiX's ray generation program");
+  EXPECT_EQ(decisions.at("accel").value, "optix");
+  EXPECT_EQ(decisions.at("optix-hits").value, "custom");
+  SceneProperties masked = triangle_scene(), forest = triangle_scene();
+  masked.has_masks = true, forest.instances = 20;
+  for (const SceneProperties& scene : {masked, forest})
+    EXPECT_TRUE(optix_plan({{"mode", "megakernel"}}, scene).traces_by_optix);
+}
+
+TEST(OptixPlan, SaysWhetherThreadsAreReordered) {
+  const char* const reorders_nothing = "; this GPU reorders nothing: RTX GPUs do, from Ada on";
+  DeviceProperties ada = optix_gpu();
+  ada.can_reorder = true;
+  const auto reorder = [](const char* value, const DeviceProperties& device) {
+    const ExecutionPlan plan =
+        optix_plan({{"mode", "megakernel"}, {"reorder", value}}, triangle_scene(), device);
+    const Decision decision = decisions_of(plan).at("reorder");
+    EXPECT_EQ(plan.reorder, decision.value == "on");
+    return decision.value + ": " + decision.reason;
+  };
+  EXPECT_EQ(reorder("on", ada), "on: asked for");
+  EXPECT_EQ(reorder("off", ada), "off: not asked for");
+  EXPECT_EQ(reorder("on", optix_gpu()), std::string("on: asked for") + reorders_nothing);
+  EXPECT_EQ(reorder("off", optix_gpu()), std::string("off: not asked for") + reorders_nothing);
+  EXPECT_EQ(decisions_of(optix_plan({})).count("reorder"), 0u);  // the wavefront has queues
+}
+
+TEST(OptixPlan, RefusesWhatItsMegakernelDoesNotKnow) {
+  SceneProperties scene = triangle_scene();
+  scene.name = "room";
+  const auto refusal = [&](Choices settings, const SceneProperties& refused) {
+    settings["mode"] = "megakernel";
+    return optix_refusal(settings, refused);
+  };
+  SceneProperties media = scene, both = scene, spheres = scene;
+  media.has_media = true;
+  EXPECT_EQ(refusal({}, media),
+            "--accel optix: its megakernel knows no media; scene 'room' has some, expected --mode "
+            "wavefront");
+  both.has_masks = true, both.instances = 3;
+  EXPECT_EQ(refusal({}, both),
+            "--accel optix: masks and instances are not traced together; scene 'room' has both");
+  spheres.spheres = 3;
+  EXPECT_NE(refusal({}, spheres).find("only triangles and quads"), std::string::npos);
+  EXPECT_EQ(refusal({{"kernel", "vote"}}, scene),
+            "--accel optix: its threads follow their paths; expected --kernel loop, not vote");
+  EXPECT_EQ(refusal({{"block", "32x4"}}, scene),
+            "--accel optix: OptiX chooses its blocks; expected no --block");
+  EXPECT_EQ(refusal({{"counters", "on"}}, scene),
+            "--accel optix: OptiX's kernels are not counted; expected no --counters");
+  EXPECT_NE(refusal({{"branching", "reduced"}}, scene).find("expected --branching divergent"),
+            std::string::npos);
+  EXPECT_NE(refusal({{"path-bytes", "32"}}, scene), "");
+}
+
 TEST(OptixPlan, IsNeverChosenByItself) {
   for (const char* mode : {"auto", "wavefront", "megakernel"})
     EXPECT_FALSE(optix_plan({{"accel", "auto"}, {"mode", mode}}).traces_by_optix);
@@ -83,8 +153,6 @@ TEST(OptixPlan, RefusesWhatItCannotTrace) {
   cpu.threads = 4;
   EXPECT_EQ(optix_refusal({}, scene, cpu),
             "--accel optix: OptiX runs on NVIDIA's GPUs; expected --device cuda");
-  EXPECT_EQ(optix_refusal({{"mode", "megakernel"}}, scene),
-            "--accel optix: OptiX traces its queues; expected --mode wavefront, not megakernel");
   EXPECT_EQ(optix_refusal({{"stages", "fused"}}, scene),
             "--accel optix: fused stages have no queue; expected --stages split");
   EXPECT_EQ(optix_refusal({{"persistent", "off"}}, scene),

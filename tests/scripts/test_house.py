@@ -8,8 +8,8 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SRC = ROOT / "src"
 
-FILES_MAX = 664
-LINES_MAX = 87_800
+FILES_MAX = 667
+LINES_MAX = 88_200
 FOLDER_FILES_MAX = 25
 MEDIAN_LINES_MIN = 95
 LOOP_LINES_MAX = 60

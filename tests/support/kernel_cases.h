@@ -57,6 +57,8 @@ inline Settings settings_of(KernelBody body) {
       return {{"mode", "wavefront"}, {"stages", "split"}, {"finish-paths", "0"}};
     case fused:
       return {{"mode", "wavefront"}, {"stages", "fused"}, {"finish-paths", "0"}};
+    case optix:
+      break;  // test_optix_cuda.cpp
   }
   return {};
 }

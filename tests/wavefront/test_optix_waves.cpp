@@ -3,13 +3,14 @@
 #include <numeric>
 
 #include "accel/emulated_optix.h"
+#include "common/accel/trace_optix/optix_tracer.h"
 #include "common/device/cpu/cpu_renderer.h"
 #include "medium/filled_glasses.h"
 #include "mode_cases.h"
 #include "scene/masked_room.h"
 #include "scene/mixed_scene.h"
 #include "wavefront/loop.h"
-#include "wavefront/optix/optix_tracer.h"
+#include "wavefront/optix/optix_queue.h"
 #include "wavefront/run_stage_cpu.h"
 
 namespace pt {
@@ -30,17 +31,8 @@ void add_ray_generation(OptixPrograms& programs, const std::string& name) {
 }
 
 OptixPrograms queue_programs() {
-  using namespace optix;
-  using Closest = ClosestJudge<QueueApi>;
-  using Any = AnyJudge<QueueApi>;
-  OptixPrograms programs;
-  const auto scene = []() -> const OptixScene& { return queue_params->scene; };
-  programs["__intersection__closest"] = [=] { intersect_closest_box<QueueApi, Closest>(scene()); };
-  programs["__intersection__any"] = [=] { intersect_any_box<QueueApi, Any>(scene()); };
-  programs["__anyhit__closest"] = [=] { accept_closest<QueueApi, Closest>(scene()); };
-  programs["__anyhit__ties"] = [=] { judge_all<QueueApi, Closest>(scene()); };
-  programs["__anyhit__any"] = [=] { accept_any<QueueApi, Any>(scene()); };
-  programs["__closesthit__name"] = [=] { name_hit<QueueApi>(scene()); };
+  OptixPrograms programs = hit_programs<QueueApi, ClosestJudge<QueueApi>, AnyJudge<QueueApi>>(
+      []() -> const OptixScene& { return queue_params->scene; });
   add_ray_generation<OptixHits::custom>(programs, "custom");
   add_ray_generation<OptixHits::any_hit>(programs, "any_hit");
   add_ray_generation<OptixHits::built_in>(programs, "built_in");
@@ -52,7 +44,9 @@ class OptixWaves : public CpuRenderer {
  public:
   OptixWaves(const ExecutionPlan& plan, const SceneData& scene, std::uint32_t slots)
       : CpuRenderer(plan, scene),
-        tracer_(optix_memory_, scene_, scene.properties.has_masks, plan.optix_hits, "code") {
+        has_masks_(scene.properties.has_masks),
+        tracer_(optix_memory_, scene_.triangles, plan.optix_hits,
+                {"code", sizeof(OptixQueueParams)}) {
     buffers_.policy = WavePolicy(plan, traits_, scene_, false);
     buffers_.pool.slot_count = buffers_.all_slots = slots;
     buffers_.counters = &counters_;
@@ -78,10 +72,10 @@ class OptixWaves : public CpuRenderer {
   static constexpr bool traces_queues = true;
   bool traces_queues_here() const { return true; }
   void trace_queue(const StageQueues& queues, const SampleBuffer& samples) {
-    tracer_.trace_queue(scene_, buffers_.pool, {queues.slots, queues.count}, samples);
+    trace(OptixPipeline::closest, queues, samples);
   }
   void trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples) {
-    tracer_.trace_shadow_queue(scene_, buffers_.pool, {queues.slots, queues.count}, samples);
+    trace(OptixPipeline::any, queues, samples);
   }
   static constexpr bool flies_queues = false;
   template <class Wave>
@@ -90,6 +84,16 @@ class OptixWaves : public CpuRenderer {
   }
 
  private:
+  void trace(OptixPipeline::Launch kind, const StageQueues& queues, const SampleBuffer& samples) {
+    trace_by_optix(tracer_, kind,
+                   {.world = scene_,
+                    .has_masks = has_masks_,
+                    .pool = buffers_.pool,
+                    .slots = queues.slots,
+                    .count = queues.count,
+                    .samples = samples});
+  }
+
   void trace_batch(const SampleBuffer& batch) override {
     path_count_ = batch.path_count;
     counters_ = {};
@@ -120,6 +124,7 @@ class OptixWaves : public CpuRenderer {
   }
 
   HostOptixMemory optix_memory_;
+  bool has_masks_;
   OptixTracer tracer_;
   WaveCounters counters_{};
   WaveBuffers buffers_;
@@ -169,11 +174,7 @@ class OptixWavesOf : public testing::TestWithParam<OptixHits> {
 INSTANTIATE_TEST_SUITE_P(Hits, OptixWavesOf,
                          testing::Values(OptixHits::custom, OptixHits::any_hit,
                                          OptixHits::built_in),
-                         [](const auto& test) {
-                           return test.param == OptixHits::custom    ? "custom"
-                                  : test.param == OptixHits::any_hit ? "any_hit"
-                                                                     : "built_in";
-                         });
+                         hits_name);
 
 SceneData made(const std::string& scene) {
   return build_scene(with(Options(), {{"scene", scene}, {"kernel-set", "general"}}));

@@ -4,7 +4,7 @@
 #include "app/doctor/doctor.h"
 #include "common/accel/trace_optix/optix_library.h"
 #include "common/device/cuda/counter_session_cuda.h"
-#include "wavefront/optix/optix_tracer.h"
+#include "wavefront/optix/optix_queue.h"
 
 namespace pt {
 namespace {
@@ -60,7 +60,7 @@ void read_optix(CudaFacts& facts) {
                   (version == 0 ? "no RT cores: it traces by software"
                                 : "RT cores of version " + std::to_string(version / 10) + "." +
                                       std::to_string(version % 10));
-    if (optix_queue_code().empty())
+    if (optix_queue_module().code.empty())
       facts.optix_problem = "ptexp was built without it (PTEXP_OPTIX)";
   } catch (const std::exception& error) {
     facts.optix_problem = error.what();

@@ -193,6 +193,8 @@ constexpr InertRule inert_rules[] = {
      "with --accel embree: it builds its own tree"},
     {"optix-hits", [](const Options& o) { return o.accel != AccelKind::optix; },
      "without --accel optix"},
+    {"reorder", [](const Options& o) { return o.accel != AccelKind::optix; },
+     "without --accel optix"},
 };
 
 /// Scripts may give an option's default value in any case.

@@ -322,13 +322,18 @@ void add_execution(std::vector<OptionEntry>& list) {
            "Acceleration structure: none (every primitive is tested), a\n"
            "binary BVH, a compressed 8-wide BVH (triangles only), or\n"
            "Embree's (CPU, triangles only); optix: NVIDIA's OptiX (CUDA,\n"
-           "wavefront); auto: by scene and device, never optix")
+           "triangles only); auto: by scene and device, never optix")
       .add(choice("optix-hits", &Options::optix_hits),
            "--accel optix: who decides what a ray hits. custom: OptiX\n"
            "finds boxes, our test decides; any-hit: it finds triangles,\n"
            "our test decides; built-in: OptiX decides, bits may differ")
       .expert()
-      .only(wavefront, cuda)
+      .only(parallel, cuda)
+      .add(on_off("reorder", &Options::reorder),
+           "--accel optix, megakernel: threads are reordered by what their\n"
+           "rays hit, before they shade (GPUs with RT cores, from Ada on)")
+      .expert()
+      .only(megakernel, cuda)
       .add(choice("builder", &Options::builder),
            "Builder of BVHs over triangles: on the CPU binned SAH, also\n"
            "with reinsertion, SBVH, or the best of these by trial rays; on\n"

@@ -227,7 +227,8 @@ std::string report_json(const Options& options, const RenderReport& report) {
     json["optix"] = {{"build_ms", report.optix->build_ms},
                      {"bytes_built", report.optix->bytes_built},
                      {"bytes_compacted", report.optix->bytes_compacted},
-                     {"rtcore_version", report.optix->rtcore_version}};
+                     {"rtcore_version", report.optix->rtcore_version},
+                     {"reorders", report.optix->reorders}};
   }
   json["plan"] = plan_json(report.plan);
   json["scene"] = scene_json(report.scene);

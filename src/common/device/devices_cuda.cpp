@@ -28,6 +28,8 @@ std::string append_cuda_devices(std::vector<DeviceInfo>& devices) {
     device.properties.block_shared_bytes = p.sharedMemPerBlockOptin;
     device.properties.block_threads_max = p.maxThreadsPerBlock;
     device.properties.multiprocessors = p.multiProcessorCount;
+    const int capability = 10 * p.major + p.minor;  // 10.x: Blackwell without RT cores
+    device.properties.can_reorder = capability == 89 || capability >= 120;
     devices.push_back(device);
   }
   return fmt::format("this machine has {}", count);

@@ -153,6 +153,7 @@ struct ExecutionSettings {
   DeviceLimits limits;
   TreeBuilder builder = TreeBuilder::automatic;  ///< builds trees over triangles
   OptixHits optix_hits = OptixHits::custom;      ///< with AccelKind::optix
+  bool reorder = false;                          ///< likewise, megakernel: threads by their hits
   Work work = Work::persistent;                  ///< megakernel
   BlockSize block;                               ///< megakernel, threads per block
   Branching branching = Branching::divergent;

@@ -145,6 +145,7 @@ struct OptixFacts {
   double build_ms = 0;  ///< wall time, with compaction
   std::uint64_t bytes_built = 0, bytes_compacted = 0;
   unsigned rtcore_version = 0;  ///< 0: the device has no RT cores, and traces by software
+  bool reorders = false;        ///< with --reorder: the device has reordered threads
 };
 
 struct RenderReport {

@@ -175,6 +175,7 @@ class Planner {
 
   std::pair<MegakernelKind, std::string> automatic_megakernel() const {
     using enum MegakernelKind;
+    if (traces_by_optix()) return {loop, "in OptiX's ray generation program"};
     if (is_specialized()) return {loop, "spheres and quads alone: the paper's loop"};
     if (scene_.spheres > 0) return {loop, "the others trace triangles alone"};
     if (scene_.has_motion) return {loop, "the others know no motion blur"};
@@ -215,7 +216,8 @@ class Planner {
   /// Its structure is built beside our tree, which the features of first hits still walk.
   void choose_optix() {
     check_optix(o_, scene_, device_, plan_);
-    if (!warps_can_persist() || plan_.accel != Accel::cwbvh)
+    const bool is_megakernel = plan_.mode == Mode::megakernel;
+    if (!(is_megakernel || warps_can_persist()) || plan_.accel != Accel::cwbvh)
       throw Error(
           fmt::format("--accel optix: scene '{}' has no kernel for it; OptiX traces what "
                       "persistent warps can: triangles with masks or instances, media whose "
@@ -226,6 +228,11 @@ class Planner {
            plan_.optix_hits == OptixHits::built_in
                ? "OptiX decides: hits may differ from our trees'"
                : "our test decides: hits are our trees'");
+    if (!is_megakernel) return;
+    decide(
+        "reorder", o_.reorder ? "on" : "off",
+        std::string(o_.reorder ? asked : "not asked for") +
+            (device_.can_reorder ? "" : "; this GPU reorders nothing: RTX GPUs do, from Ada on"));
   }
 
   /// The builder with which building and rendering end first. A tree is worth the more time the

@@ -19,7 +19,7 @@ struct ExecutionPlan : ImageSettings, ExecutionSettings {
   Accel accel = Accel::brute;      ///< what the scene is built as
   Accel traversal = Accel::brute;  ///< the code that traces it
   std::string why_accel;
-  bool traces_by_optix = false;  ///< OptiX traces the wavefront's queues
+  bool traces_by_optix = false;  ///< OptiX traces the wavefront's queues, or runs the megakernel
   LightSelection light_selection = LightSelection::uniform;
   MegakernelKind megakernel = MegakernelKind::loop;
   SceneMemory scene_memory = SceneMemory::global;

@@ -25,6 +25,7 @@ constexpr BodyName body_names[] = {
     {KernelBody::stages, Mode::wavefront, "wavefront split", "--stages split"},
     {KernelBody::warps, Mode::wavefront, "wavefront warps", "--persistent on"},
     {KernelBody::fused, Mode::wavefront, "wavefront fused", "--stages fused"},
+    {KernelBody::optix, Mode::megakernel, "megakernel OptiX", "--accel optix"},
 };
 constexpr const char* source_names[] = {"philox", "xorwow", "any sampler"};
 constexpr const char* geometry_names[] = {"spheres, quads", "triangles", "all primitives"};

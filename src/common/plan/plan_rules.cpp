@@ -75,6 +75,7 @@ KernelBody body_of(const ExecutionPlan& plan, bool on_cuda) {
     case Mode::serial:
       return serial;
     case Mode::megakernel:
+      if (plan.traces_by_optix) return optix;
       return !on_cuda || plan.megakernel == MegakernelKind::loop ? loop
              : plan.megakernel == MegakernelKind::vote           ? vote
                                                                  : blocks;
@@ -283,8 +284,6 @@ void check_optix(const Options& o, const SceneProperties& scene, const DevicePro
     throw Error(fmt::format("--accel optix: {}; {}", why, option));
   };
   if (!device.is_cuda) refuse("expected --device cuda", "OptiX runs on NVIDIA's GPUs");
-  if (plan.mode != Mode::wavefront)
-    refuse("expected --mode wavefront, not " + to_string(plan.mode), "OptiX traces its queues");
   if (scene.spheres > 0)
     refuse(fmt::format("scene '{}' has {} spheres", scene.name, scene.spheres),
            "only triangles and quads are traced by OptiX");
@@ -292,13 +291,26 @@ void check_optix(const Options& o, const SceneProperties& scene, const DevicePro
     refuse(fmt::format("scene '{}' moves", scene.name), "OptiX traces what stands still");
   if (o.optix_hits == OptixHits::built_in && scene.has_masks)
     refuse("expected --optix-hits custom or any-hit", "only our programs judge masks");
+  if (o.counters) refuse("expected no --counters", "OptiX's kernels are not counted");
+  if (plan.mode == Mode::megakernel) {
+    if (scene.has_media)
+      refuse(fmt::format("scene '{}' has some, expected --mode wavefront", scene.name),
+             "its megakernel knows no media");
+    if (!scene.has_plain_instances())
+      refuse(fmt::format("scene '{}' has both", scene.name),
+             "masks and instances are not traced together");
+    if (plan.megakernel != MegakernelKind::loop)
+      refuse("expected --kernel loop, not " + to_string(plan.megakernel),
+             "its threads follow their paths");
+    if (!(o.block == BlockSize{})) refuse("expected no --block", "OptiX chooses its blocks");
+    return;
+  }
   if (o.stages == Stages::fused) refuse("expected --stages split", "fused stages have no queue");
   if (!o.persistent) refuse("expected --persistent on", "whole queues are traced");
   if (o.schedule == Schedule::graph)
     refuse("expected --schedule host", "a launch of OptiX is not recorded in a graph");
   if (o.finish_paths.value_or(0) > 0)
     refuse("expected --finish-paths 0", "only waves have their rays traced by OptiX");
-  if (o.counters) refuse("expected no --counters", "OptiX's kernels are not counted");
 }
 
 void check_plan(const ExecutionPlan& plan, const Options& options, const SceneProperties& scene,

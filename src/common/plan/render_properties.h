@@ -54,6 +54,7 @@ struct DeviceProperties {
   std::size_t block_shared_bytes = 227 * 1024;  ///< most shared memory of a block
   int block_threads_max = 1024;
   int multiprocessors = 132;
+  bool can_reorder = false;   ///< threads, where OptiX is asked to: RTX GPUs, from Ada on
   PlanConstants constants{};  ///< an H200's, or those of a calibration
 };
 

@@ -102,13 +102,24 @@ PT_HD bool any_triangle(const Scene& scene, const Ray& ray, float t_max, std::ui
   }
 }
 
+/// Whether others trace the rays (OptiX, in the megakernel that it runs), in a scene that has
+/// triangles alone:
+///   static Hit Traits::Tracer::closest(const Scene&, const Ray&, std::uint32_t ray_key)
+///   static bool Traits::Tracer::any(const ShadowRay&, std::uint32_t ray_key)
+template <class Traits>
+concept HasTracer = requires {
+  typename Traits::Tracer;
+};
+
 /// `ray_key` (next_ray_key) decides what masks let through; read in scenes with masks alone. `time`
 /// is the path's, read in scenes that move alone.
 template <class Traits>
 PT_HD Hit intersect_closest(const Scene& scene, const Ray& ray, std::uint32_t ray_key = 0,
                             float time = 0.0f) {
   lanes_of(ray).count(LanePoint::intersect);
-  if constexpr (Traits::geometry == Geometry::spheres_and_quads) {
+  if constexpr (HasTracer<Traits>) {
+    return Traits::Tracer::closest(scene, ray, ray_key);
+  } else if constexpr (Traits::geometry == Geometry::spheres_and_quads) {
     return closest_primitive<Traits>(scene, ray);
   } else {
     Hit nearest;
@@ -132,7 +143,9 @@ template <class Traits>
 PT_HD bool intersect_shadow(const Scene& scene, const ShadowRay& shadow, std::uint32_t ray_key = 0,
                             float time = 0.0f) {
   lanes_of(shadow.ray).count(LanePoint::intersect);
-  if constexpr (Traits::geometry == Geometry::spheres_and_quads) {
+  if constexpr (HasTracer<Traits>) {
+    return Traits::Tracer::any(shadow, ray_key);
+  } else if constexpr (Traits::geometry == Geometry::spheres_and_quads) {
     return any_primitive<Traits>(scene, shadow.ray, shadow.distance);
   } else {
     if (Traits::geometry == Geometry::mixed && scene.primitives.count() > 0 &&

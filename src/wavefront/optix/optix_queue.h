@@ -2,6 +2,7 @@
 // with.
 #pragma once
 
+#include "common/accel/trace_optix/optix_pipeline.h"
 #include "common/accel/trace_optix/optix_programs.h"
 #include "common/scene/data/scene.h"
 #include "common/transport/mask.h"
@@ -9,8 +10,10 @@
 
 namespace pt {
 
+class OptixTracer;
+
 struct OptixQueueParams {
-  OptixScene scene;
+  OptixScene scene{};
   Scene world;  ///< for masks
   bool has_masks = false;
   PathPool pool;
@@ -19,35 +22,12 @@ struct OptixQueueParams {
   SampleBuffer samples;
 };
 
-/// Not part of each program that judges: masks are rare, and their code is long.
-PT_NOINLINE inline bool judged_mask_hides(MaskView masks, std::uint32_t ray_key, Triangle triangle,
-                                          float b1, float b2) {
-  return passes_mask(masks, ray_key, triangle, b1, b2, [] { return 0u; });
-}
+/// optix_queue_programs.cu.
+OptixModule optix_queue_module();
 
-/// A query that asks the scene's masks, by the key of the ray (transport/mask.h). Scenes with
-/// instances have none. Besides OptiX's functions `Api` has masks().
-template <class Api, class Query>
-class JudgingQuery : public Query {
- public:
-  static constexpr bool has_masks = true;
-
-  PT_HD JudgingQuery(float t_min, float t_max, std::uint32_t key = 0)
-      : Query(t_min, t_max), key_(key) {}
-
-  PT_OPTIX_FUNCTION bool hides(const Triangle& triangle, const TriangleHit& hit, float t,
-                               std::uint32_t) const {
-    return is_up_to_mask(*this, triangle, t) &&
-           judged_mask_hides(Api::masks(), key_, triangle, hit.b1, hit.b2);
-  }
-
- private:
-  std::uint32_t key_;
-};
-template <class Api>
-using ClosestJudge = JudgingQuery<Api, ClosestTriangle>;
-template <class Api>
-using AnyJudge = JudgingQuery<Api, AnyTriangle>;
+/// Enqueues a launch over a queue: the next hit of each path is stored (OptixPipeline::closest), or
+/// light that arrives is added (any). The tracer fills in `params.scene`.
+void trace_by_optix(OptixTracer& tracer, OptixPipeline::Launch kind, OptixQueueParams params);
 
 /// Any scene without masks has MaskedTraits' path hashes, and never asks for them.
 using OptixMaskTraits = Traits<Accel::cwbvh, Geometry::mixed, Lighting::sky, true>;

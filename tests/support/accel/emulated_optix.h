@@ -3,6 +3,7 @@
 #pragma once
 
 #include <dlfcn.h>
+#include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -70,6 +71,8 @@ struct EmulatedApi {
     OptixPayload payload{};
     std::uint32_t primitive = 0, instance = 0;
     bool ended = false, accepted = false;
+    bool has_hit_object = false;            ///< a traversal's
+    std::map<std::uint32_t, int> reorders;  ///< how often, by key
     std::uint32_t hit_primitive = 0, hit_instance = 0;
   };
   static State& state() {
@@ -92,15 +95,35 @@ struct EmulatedApi {
 
   static void trace(optix::TraversableHandle handle, const Ray& ray, float t_min, float t_max,
                     unsigned flags, unsigned record, OptixPayload& payload) {
+    traverse(handle, ray, t_min, t_max, flags, record, payload);
+    invoke(payload);
+  }
+
+  static void traverse(optix::TraversableHandle handle, const Ray& ray, float t_min, float t_max,
+                       unsigned flags, unsigned record, OptixPayload& payload) {
     State& s = state();
     s.ray = ray, s.t_min = t_min, s.t_max = t_max, s.flags = flags, s.record = record;
     s.payload = payload, s.ended = s.accepted = false;
     if (handle != 0) traverse(handle);
-    if (s.accepted && (flags & optix::ray_disable_closesthit) == 0) {
+    payload = s.payload;
+    s.has_hit_object = true;
+  }
+
+  static void reorder(std::uint32_t key, std::uint32_t bits) {
+    if (!state().has_hit_object) throw std::logic_error("nothing was traversed");
+    if (key >> bits != 0) throw std::logic_error("the key has more bits");
+    ++state().reorders[key];
+  }
+
+  static void invoke(OptixPayload& payload) {
+    State& s = state();
+    s.payload = payload;
+    if (s.accepted && (s.flags & optix::ray_disable_closesthit) == 0) {
       s.primitive = s.hit_primitive, s.instance = s.hit_instance;
       run(group().hit.closest);
     }
     payload = s.payload;
+    s.has_hit_object = false;
   }
 
  private:
@@ -199,6 +222,27 @@ struct EmulatedApi {
   }
 };
 
+/// The programs that judge (PT_OPTIX_HIT_PROGRAMS); `scene` gives the module's OptixScene.
+template <class Api, class Closest, class Any, class Scene>
+OptixPrograms hit_programs(Scene scene) {
+  using namespace optix;
+  OptixPrograms programs;
+  programs["__intersection__closest"] = [=] { intersect_closest_box<Api, Closest>(scene()); };
+  programs["__intersection__any"] = [=] { intersect_any_box<Api, Any>(scene()); };
+  programs["__anyhit__closest"] = [=] { accept_closest<Api, Closest>(scene()); };
+  programs["__anyhit__ties"] = [=] { judge_all<Api, Closest>(scene()); };
+  programs["__anyhit__any"] = [=] { accept_any<Api, Any>(scene()); };
+  programs["__closesthit__name"] = [=] { name_hit<Api>(scene()); };
+  return programs;
+}
+
+/// The names of kinds of hits as parameters of tests.
+inline std::string hits_name(const testing::TestParamInfo<OptixHits>& test) {
+  return test.param == OptixHits::custom    ? "custom"
+         : test.param == OptixHits::any_hit ? "any_hit"
+                                            : "built_in";
+}
+
 /// The tests' library, which lies beside their program, and which PTEXP_OPTIX_LIBRARY names as long
 /// as this lives.
 class UsedFakeOptix {
@@ -230,6 +274,7 @@ class UsedFakeOptix {
                   set_params = std::move(set_params)](const FakeOptix::Launch& launch) {
       set_params(launch.params);
       EmulatedApi::State& state = EmulatedApi::state();
+      state.reorders.clear();
       state.library = fake_, state.launch = &launch, state.programs = &programs;
       for (state.index = 0; state.index < launch.width; ++state.index) programs.at(launch.raygen)();
     };

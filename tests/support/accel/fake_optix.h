@@ -33,9 +33,10 @@ struct FakeOptix {
   optix::Result error = 7900;
   int known_abi = optix::abi_version;
   std::size_t pointers = optix::table_pointers;
-  unsigned primitives_max = 1u << 29, instances_max = 1u << 24, rtcore_version = 0;
+  unsigned primitives_max = 1u << 29, instances_max = 1u << 24, rtcore_version = 0, reordering = 0;
   int live = 0;                       ///< objects that are not destroyed
   std::string code;                   ///< of the last module
+  std::string constants;              ///< of its parameters, from the first byte on
   optix::PipelineOptions pipeline{};  ///< options of the last pipeline
   std::map<optix::TraversableHandle, Structure> structures;
   std::function<void(const Launch&)> run;

@@ -34,7 +34,7 @@ inline constexpr Result error_table_size = 7802;
 
 // Properties of a device [L].
 inline constexpr int property_max_primitives = 0x2003, property_max_instances = 0x2004,
-                     property_rtcore_version = 0x2005;
+                     property_rtcore_version = 0x2005, property_reordering = 0x200a;
 
 // Enumerators of one use each [D] [M] [L].
 inline constexpr int optimization_level_default = 0, debug_level_none = 0x2350;
@@ -65,11 +65,18 @@ struct ContextOptions {  // [D]
   int validation;
 };
 
+/// Launch parameters that the compiler may take for constants.
+struct BoundValue {  // [L]
+  std::size_t offset, bytes;
+  const void* value;
+  const char* annotation;
+};
+
 struct ModuleOptions {  // [D]
   int max_registers;
   int optimization_level;
   int debug_level;
-  const void* bound_values;
+  const BoundValue* bound_values;
   unsigned bound_value_count;
   unsigned payload_type_count;
   const void* payload_types;

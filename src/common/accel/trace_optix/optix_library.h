@@ -46,6 +46,9 @@ class OptixContext {
   /// Of RT cores, "10" for version 1.0; 0: the device has none.
   unsigned rtcore_version() const { return property(optix::property_rtcore_version); }
 
+  /// Whether the device reorders threads where programs ask for it; elsewhere that does nothing.
+  bool reorders() const { return property(optix::property_reordering) != 0; }
+
  private:
   std::shared_ptr<const OptixLibrary> library_;
   optix::Context context_ = nullptr;

@@ -1,5 +1,7 @@
 #include "common/accel/trace_optix/optix_pipeline.h"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -24,11 +26,27 @@ constexpr std::size_t record_bytes = optix::record_header_bytes;
 
 }  // namespace
 
+std::string unpack_optix_code(std::span<const unsigned char> packed) {
+  std::string text;
+  if (packed.size() < 4) return text;
+  // gzip's last four bytes are the text's size.
+  for (int i = 1; i <= 4; ++i) text.resize(text.size() << 8 | packed[packed.size() - i]);
+  z_stream stream{};
+  stream.next_in = const_cast<Bytef*>(packed.data());
+  stream.avail_in = static_cast<uInt>(packed.size());
+  stream.next_out = reinterpret_cast<Bytef*>(text.data());
+  stream.avail_out = static_cast<uInt>(text.size());
+  const bool is_whole =
+      inflateInit2(&stream, 15 + 16) == Z_OK && inflate(&stream, Z_FINISH) == Z_STREAM_END;
+  inflateEnd(&stream);
+  if (!is_whole) throw Error("OptiX: the programs in ptexp are damaged");
+  return text;
+}
+
 OptixPipeline::OptixPipeline(const OptixContext& context, OptixMemory& memory,
-                             const std::string& code, OptixHits hits, std::size_t params_bytes,
-                             bool has_instances)
-    : context_(context), memory_(memory), params_bytes_(params_bytes) {
-  if (code.empty())
+                             const OptixModule& module, OptixHits hits, bool has_instances)
+    : context_(context), memory_(memory), params_bytes_(module.params_bytes) {
+  if (module.code.empty())
     throw Error("OptiX: ptexp was built without programs for it (PTEXP_OPTIX and PTEXP_CUDA)");
   options_.graph_flags =
       has_instances ? optix::graph_single_level_instancing : optix::graph_single_gas;
@@ -39,11 +57,11 @@ OptixPipeline::OptixPipeline(const OptixContext& context, OptixMemory& memory,
   options_.primitive_flags =
       hits == OptixHits::custom ? optix::primitives_custom : optix::primitives_triangle;
   try {
-    create_module(code);
-    create_groups(hits);
+    create_module(module);
+    create_groups(module.launches, hits);
     link(has_instances);
     fill_records();
-    params_ = OptixBuffer(memory, params_bytes, "OptiX's parameters");
+    params_ = OptixBuffer(memory, params_bytes_, "OptiX's parameters");
   } catch (...) {
     destroy();
     throw;
@@ -60,29 +78,36 @@ void OptixPipeline::destroy() noexcept {
   if (module_ != nullptr) call.module_destroy(module_);
 }
 
-void OptixPipeline::create_module(const std::string& code) {
-  optix::ModuleOptions module{};
-  module.optimization_level = optix::optimization_level_default;
-  module.debug_level = optix::debug_level_none;
+void OptixPipeline::create_module(const OptixModule& module) {
+  optix::ModuleOptions options{};
+  options.optimization_level = optix::optimization_level_default;
+  options.debug_level = optix::debug_level_none;
+  const optix::BoundValue constants{0, module.constants.size(), module.constants.data(), nullptr};
+  if (!module.constants.empty()) options.bound_values = &constants, options.bound_value_count = 1;
   call_with_log(context_.library(), "optixModuleCreate", [&](char* log, std::size_t* bytes) {
-    return context_.functions().module_create(context_.get(), &module, &options_, code.c_str(),
-                                              code.size(), log, bytes, &module_);
+    return context_.functions().module_create(context_.get(), &options, &options_,
+                                              module.code.data(), module.code.size(), log, bytes,
+                                              &module_);
   });
 }
 
-void OptixPipeline::create_groups(OptixHits hits) {
-  std::array<optix::ProgramGroupDescription, group_count> all{};
-  for (optix::ProgramGroupDescription& group : all) group.kind = optix::group_kind_hitgroup;
-  all[0].kind = all[1].kind = optix::group_kind_raygen;
-  all[2].kind = optix::group_kind_miss;
+void OptixPipeline::create_groups(std::vector<std::string> launches, OptixHits hits) {
   const char* suffix = hits == OptixHits::custom    ? "custom"
                        : hits == OptixHits::any_hit ? "any_hit"
                                                     : "built_in";
-  const std::string raygens[] = {std::string("__raygen__closest_") + suffix,
-                                 std::string("__raygen__any_") + suffix};
-  for (int i = 0; i < launch_kinds; ++i) all[i].single = {module_, raygens[i].c_str()};
+  if (launches.empty())
+    launches = {std::string("__raygen__closest_") + suffix, std::string("__raygen__any_") + suffix};
+  launch_count_ = launches.size();
+  std::vector<optix::ProgramGroupDescription> all(launch_count_ + 1 + hit_kinds);
+  for (optix::ProgramGroupDescription& group : all) group.kind = optix::group_kind_hitgroup;
+  for (std::size_t i = 0; i < launch_count_; ++i) {
+    all[i].kind = optix::group_kind_raygen;
+    all[i].single = {module_, launches[i].c_str()};
+  }
   // No program for rays that miss: their payload says so.
-  optix::HitPrograms* hit[] = {&all[3].hit, &all[4].hit, &all[5].hit};
+  all[launch_count_].kind = optix::group_kind_miss;
+  optix::HitPrograms* hit[hit_kinds];
+  for (std::size_t i = 0; i < hit_kinds; ++i) hit[i] = &all[launch_count_ + 1 + i].hit;
   switch (hits) {
     case OptixHits::custom:
       hit[0]->intersection = hit[2]->intersection = {module_, "__intersection__closest"};
@@ -98,9 +123,11 @@ void OptixPipeline::create_groups(OptixHits hits) {
       break;
   }
   const optix::ProgramGroupOptions options{};
+  groups_.resize(all.size());
   call_with_log(context_.library(), "optixProgramGroupCreate", [&](char* log, std::size_t* bytes) {
-    return context_.functions().group_create(context_.get(), all.data(), group_count, &options, log,
-                                             bytes, groups_);
+    return context_.functions().group_create(context_.get(), all.data(),
+                                             static_cast<unsigned>(all.size()), &options, log,
+                                             bytes, groups_.data());
   });
 }
 
@@ -108,8 +135,8 @@ void OptixPipeline::link(bool has_instances) {
   const optix::FunctionTable& call = context_.functions();
   const optix::LinkOptions options{1};
   call_with_log(context_.library(), "optixPipelineCreate", [&](char* log, std::size_t* bytes) {
-    return call.pipeline_create(context_.get(), &options_, &options, groups_, group_count, log,
-                                bytes, &pipeline_);
+    return call.pipeline_create(context_.get(), &options_, &options, groups_.data(),
+                                static_cast<unsigned>(groups_.size()), log, bytes, &pipeline_);
   });
   optix::StackSizes most{};
   for (optix::ProgramGroup group : groups_) {
@@ -135,8 +162,8 @@ void OptixPipeline::link(bool has_instances) {
 }
 
 void OptixPipeline::fill_records() {
-  std::vector<char> headers(group_count * record_bytes);
-  for (int i = 0; i < group_count; ++i) {
+  std::vector<char> headers(groups_.size() * record_bytes);
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
     context_.library().check(
         context_.functions().record_header(groups_[i], headers.data() + i * record_bytes),
         "optixSbtRecordPackHeader");
@@ -151,9 +178,9 @@ void OptixPipeline::launch(Launch kind, const void* params, std::uint32_t width)
   const auto record = [&](std::size_t i) { return records_.address() + i * record_bytes; };
   optix::BindingTable table{};
   table.raygen = record(kind);
-  table.miss = record(launch_kinds);
+  table.miss = record(launch_count_);
   table.miss_stride = record_bytes, table.miss_count = 1;
-  table.hit = record(launch_kinds + 1);
+  table.hit = record(launch_count_ + 1);
   table.hit_stride = record_bytes, table.hit_count = hit_kinds;
   context_.library().check(
       context_.functions().launch(pipeline_, memory_.stream(), params_.address(), params_bytes_,

@@ -13,6 +13,35 @@
 #define PT_OPTIX_FUNCTION inline
 #endif
 
+namespace pt {
+
+/// A query that asks the scene's masks, by the key of the ray: judged_mask_hides
+/// (transport/mask.h), which is not part of each program, since masks are rare and their code is
+/// long. Scenes with instances have none. Besides OptiX's functions `Api` has masks().
+template <class Api, class Query>
+class JudgingQuery : public Query {
+ public:
+  static constexpr bool has_masks = true;
+
+  PT_HD JudgingQuery(float t_min, float t_max, std::uint32_t key = 0)
+      : Query(t_min, t_max), key_(key) {}
+
+  PT_OPTIX_FUNCTION bool hides(const Triangle& triangle, const TriangleHit& hit, float t,
+                               std::uint32_t) const {
+    return is_up_to_mask(*this, triangle, t) &&
+           judged_mask_hides(Api::masks(), key_, triangle, hit.b1, hit.b2);
+  }
+
+ private:
+  std::uint32_t key_;
+};
+template <class Api>
+using ClosestJudge = JudgingQuery<Api, ClosestTriangle>;
+template <class Api>
+using AnyJudge = JudgingQuery<Api, AnyTriangle>;
+
+}  // namespace pt
+
 namespace pt::optix {
 
 /// OptixPayload of the program that runs.
@@ -118,11 +147,13 @@ PT_OPTIX_FUNCTION Query trace_far(const TriangleTree& tree, const Ray& ray, Quer
   return query;
 }
 
-/// `query` is fresh. The hit is that of our tests; with OptixHits::built_in OptiX's distance stays
-/// where our test finds that its triangle is missed.
+/// Whether rays from far away pass through our own tree, not through OptiX's structure.
+constexpr bool has_far_rays(OptixHits hits) { return hits != OptixHits::built_in; }
+
+/// By OptiX; `query` is fresh. The hit is that of our tests; with OptixHits::built_in OptiX's
+/// distance stays where our test finds that its triangle is missed.
 template <class Api, OptixHits hits, class Query>
-PT_OPTIX_FUNCTION Hit trace_closest(const OptixScene& scene, const Ray& ray, Query query) {
-  if (!is_traceable(ray)) return {};
+PT_OPTIX_FUNCTION Hit trace_near_closest(const OptixScene& scene, const Ray& ray, Query query) {
   const float margin = optix_cull_margin(scene, ray);
   const float t_min = optix_t_min(query.t_min(), margin);
   const float t_max = optix_t_max(query.t_max(), margin);
@@ -139,7 +170,6 @@ PT_OPTIX_FUNCTION Hit trace_closest(const OptixScene& scene, const Ray& ray, Que
     const Hit ours = query.result();
     return ours.is_miss() ? hit : ours;
   } else {
-    if (begins_too_far(scene, ray)) return trace_far(scene.tree, ray, query).result();
     OptixPayload payload = to_payload(query, ray);
     Api::trace(scene.handle, ray, t_min, t_max,
                hits == OptixHits::custom ? ray_disable_anyhit | ray_disable_closesthit
@@ -155,10 +185,9 @@ PT_OPTIX_FUNCTION Hit trace_closest(const OptixScene& scene, const Ray& ray, Que
   }
 }
 
-/// Whether anything is met.
+/// Whether anything is met, likewise.
 template <class Api, OptixHits hits, class Query>
-PT_OPTIX_FUNCTION bool trace_any(const OptixScene& scene, const Ray& ray, Query query) {
-  if (!is_traceable(ray)) return false;
+PT_OPTIX_FUNCTION bool trace_near_any(const OptixScene& scene, const Ray& ray, Query query) {
   const float margin = optix_cull_margin(scene, ray);
   if constexpr (hits == OptixHits::built_in) {
     OptixPayload payload = to_payload(Hit());
@@ -168,7 +197,6 @@ PT_OPTIX_FUNCTION bool trace_any(const OptixScene& scene, const Ray& ray, Query 
     from_payload(payload, hit);
     return !hit.is_miss();
   } else {
-    if (begins_too_far(scene, ray)) return trace_far(scene.tree, ray, query).result();
     OptixPayload payload = to_payload(query, ray);
     Api::trace(scene.handle, ray, optix_t_min(query.t_min(), margin),
                optix_t_max(query.t_max(), margin),
@@ -179,6 +207,28 @@ PT_OPTIX_FUNCTION bool trace_any(const OptixScene& scene, const Ray& ray, Query 
     from_payload(payload, query);
     return query.result();
   }
+}
+
+/// What `near` gives, or what our own tree does for a ray from far away.
+template <class Query, class Near>
+PT_OPTIX_FUNCTION auto trace_any_distance(bool has_far_rays, const OptixScene& scene,
+                                          const Ray& ray, Query query, Near&& near)
+    -> decltype(near()) {
+  if (!is_traceable(ray)) return {};
+  if (has_far_rays && begins_too_far(scene, ray)) return trace_far(scene.tree, ray, query).result();
+  return near();
+}
+
+template <class Api, OptixHits hits, class Query>
+PT_OPTIX_FUNCTION Hit trace_closest(const OptixScene& scene, const Ray& ray, Query query) {
+  return trace_any_distance(has_far_rays(hits), scene, ray, query,
+                            [&] { return trace_near_closest<Api, hits>(scene, ray, query); });
+}
+
+template <class Api, OptixHits hits, class Query>
+PT_OPTIX_FUNCTION bool trace_any(const OptixScene& scene, const Ray& ray, Query query) {
+  return trace_any_distance(has_far_rays(hits), scene, ray, query,
+                            [&] { return trace_near_any<Api, hits>(scene, ray, query); });
 }
 
 }  // namespace pt::optix

@@ -1,17 +1,18 @@
 // The module for OptiX that traces arrays of rays, compiled to PTX by CMake (cmake/Optix.cmake).
+#include "common/accel/trace_optix/optix_pipeline.h"
 #include "common/accel/trace_optix/optix_rays.h"
 
 namespace pt {
 namespace {
 
-constexpr char ray_code[] =
+constexpr unsigned char ray_code[] = {
 #include <optix/optix_ray_programs.inc>
-    ;
+};
 
 }  // namespace
 
 const std::string& optix_ray_code() {
-  static const std::string code = ray_code;
+  static const std::string code = unpack_optix_code(ray_code);
   return code;
 }
 

@@ -89,6 +89,8 @@ class CudaLauncher {
   StageClock* clock() const { return clock_; }
   void set_clock(StageClock* clock) { clock_ = clock; }
   void reset_clock();
+  /// What runs next is this stage, whose launches read no clock.
+  void enqueue_stamp(StageId stage);
   void read_clock(RenderRun& run) const;
   /// What was launched so far.
   const std::vector<KernelInfo>& kernels() const { return kernels_; }

@@ -120,12 +120,16 @@ void CudaLauncher::time_batch(RenderRun& run, const std::function<void()>& enque
   check_cuda(cudaEventRecord(start_, stream_), "cudaEventRecord");
   launch("start_clock", start_clock, 1, 1, 0, clock_);
   enqueue();
-  launch("stop_clock", stop_clock, 1, 1, 0, clock_);
+  launch("stop_clock", stamp_stage, 1, 1, 0, clock_, StageId::idle);
   check_cuda(cudaEventRecord(stop_, stream_), "cudaEventRecord");
   check_cuda(cudaEventSynchronize(stop_), "rendering a batch");
   float elapsed_ms = 0;
   check_cuda(cudaEventElapsedTime(&elapsed_ms, start_, stop_), "cudaEventElapsedTime");
   run.kernel_ms += elapsed_ms;
+}
+
+void CudaLauncher::enqueue_stamp(StageId stage) {
+  launch("stamp", stamp_stage, 1, 1, 0, clock_, stage);
 }
 
 HardwareCounters CudaLauncher::count_launches(const std::function<void()>& work) {

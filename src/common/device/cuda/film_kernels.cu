@@ -77,6 +77,6 @@ __global__ void start_clock(StageClock* clock) {
   clock->running = StageId::idle;
 }
 
-__global__ void stop_clock(StageClock* clock) { stamp(clock, StageId::idle); }
+__global__ void stamp_stage(StageClock* clock, StageId id) { stamp(clock, id); }
 
 }  // namespace pt

@@ -31,9 +31,10 @@ __global__ void accumulate_planes(const __grid_constant__ FilmView film,
 void develop_film(const FilmPixel* film, float* rgb, std::uint32_t pixel_count,
                   cudaStream_t stream);
 
-/// The stage clock runs between these two, of one thread each.
+/// The stage clock runs from the first of these on, to the second with StageId::idle; of one thread
+/// each.
 __global__ void start_clock(StageClock* clock);
-__global__ void stop_clock(StageClock* clock);
+__global__ void stamp_stage(StageClock* clock, StageId id);
 
 using FeatureKernel = void (*)(Scene scene, FilmView film, SampleBuffer batch, SamplerSource source,
                                StageClock* clock);
