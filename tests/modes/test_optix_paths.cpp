@@ -99,12 +99,14 @@ class OptixPaths : public testing::TestWithParam<OptixHits> {
     EXPECT_EQ(fake_->constants,
               std::string(reinterpret_cast<const char*>(&choices), sizeof choices));
     reorders_ = EmulatedApi::state().reorders;
-    EXPECT_EQ(!reorders_.empty(), reorders);
+    traversals_ = EmulatedApi::state().traversals;
+    EXPECT_EQ(!reorders_.empty(), reorders && traversals_ > 0);
   }
 
   UsedFakeOptix fake_;
   int launches_ = 0;
   std::map<std::uint32_t, int> reorders_;  ///< of the last launch, by key
+  int traversals_ = 0;                     ///< likewise
 };
 INSTANTIATE_TEST_SUITE_P(Hits, OptixPaths,
                          testing::Values(OptixHits::custom, OptixHits::any_hit,
@@ -123,10 +125,16 @@ TEST_P(OptixPaths, OfTrianglesGiveTheSerialImage) {
 }
 TEST_P(OptixPaths, OfInstancesGiveTheSerialImage) { expect_equal(made("instances:4")); }
 
-// Beyond OptixReach.
+// Beyond OptixReach, a camera's rays pass through our own tree where our test decides.
 TEST_P(OptixPaths, FromFarAwayGiveTheSerialImage) {
-  expect_equal(made("statue:1K"),
-               {{"look-from", "400,300,500"}, {"look-at", "0,0,0"}, {"fov", "0.3"}});
+  const Settings far{{"look-from", "400,300,500"}, {"look-at", "0,0,0"}, {"fov", "0.6"}};
+  expect_equal(made("statue:1K"), far);
+  const int all = traversals_;
+  Settings camera_alone = far;
+  camera_alone.push_back({"max-depth", "1"}), camera_alone.push_back({"nee", "off"});
+  expect_equal(made("statue:1K"), camera_alone);
+  EXPECT_GT(all, 9);
+  EXPECT_EQ(traversals_ == 0, GetParam() != OptixHits::built_in);
 }
 
 TEST_P(OptixPaths, WithRouletteGiveTheSerialImage) {

@@ -72,7 +72,8 @@ struct EmulatedApi {
     std::uint32_t primitive = 0, instance = 0;
     bool ended = false, accepted = false;
     bool has_hit_object = false;            ///< a traversal's
-    std::map<std::uint32_t, int> reorders;  ///< how often, by key
+    std::map<std::uint32_t, int> reorders;  ///< of the launch: how often, by key
+    int traversals = 0;                     ///< likewise
     std::uint32_t hit_primitive = 0, hit_instance = 0;
   };
   static State& state() {
@@ -104,6 +105,7 @@ struct EmulatedApi {
     State& s = state();
     s.ray = ray, s.t_min = t_min, s.t_max = t_max, s.flags = flags, s.record = record;
     s.payload = payload, s.ended = s.accepted = false;
+    ++s.traversals;
     if (handle != 0) traverse(handle);
     payload = s.payload;
     s.has_hit_object = true;
@@ -274,7 +276,7 @@ class UsedFakeOptix {
                   set_params = std::move(set_params)](const FakeOptix::Launch& launch) {
       set_params(launch.params);
       EmulatedApi::State& state = EmulatedApi::state();
-      state.reorders.clear();
+      state.reorders.clear(), state.traversals = 0;
       state.library = fake_, state.launch = &launch, state.programs = &programs;
       for (state.index = 0; state.index < launch.width; ++state.index) programs.at(launch.raygen)();
     };
