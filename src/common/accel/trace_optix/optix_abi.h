@@ -5,7 +5,8 @@
 //   [D] drjit-core (BSD-3), src/optix_api.h and src/optix_api.cpp: table, contexts, modules,
 //       program groups, pipelines
 //   [M] mitsuba3 (BSD-3), include/mitsuba/render/optix_api.h: build inputs, instances, structures
-//   [L] LuisaCompute (Apache-2.0), src/backends/cuda/optix_api.h: results, properties, flags
+//   [L] LuisaCompute (Apache-2.0), src/backends/cuda/optix_api.h: results, properties, flags;
+//       property_reordering in its versions for OptiX 8
 //   [N] NVIDIA's documentation (raytracing-docs.nvidia.com, 'OptiX 8.0 API reference')
 // tests/accel/test_optix_abi.cpp has the sizes and offsets.
 #pragma once

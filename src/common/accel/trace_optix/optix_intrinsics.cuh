@@ -1,7 +1,7 @@
 // OptiX's device functions that the programs call. OptiX's compiler replaces calls by these names;
 // CUDA's assembler does not know them. Names and operands as in LuisaCompute (Apache-2.0,
 // src/backends/cuda/cuda_builtin/cuda_device_resource.h) and drjit-core (BSD-3,
-// src/cuda_eval.cpp).
+// src/cuda_eval.cpp, where jitc_cuda_render_trace has those of hit objects).
 #pragma once
 
 #define PT_OPTIX_FUNCTION __device__ __forceinline__
