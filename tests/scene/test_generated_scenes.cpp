@@ -399,6 +399,42 @@ TEST(Forest, EveryTreeStandsOnTheGround) {
   }
 }
 
+TEST(Forest, SomeTreesSwayAboutTheirFeet) {
+  EXPECT_FALSE(make_forest_scene(50, 0.0f).moves());
+  EXPECT_EQ(make_forest_scene(50, 100.0f).motion.instances.size(), 50u);
+  const SceneData scene = make_forest_scene(2'000, 25.0f);
+  EXPECT_NEAR(static_cast<double>(scene.motion.instances.size()), 500.0, 5.0);
+  float least = 90.0f, most = 0.0f;
+  for (const auto& [instance, keys] : scene.motion.instances) {
+    ASSERT_EQ(keys.size(), 2u);
+    EXPECT_EQ(keys[0].time, scene.motion.shutter.open);
+    EXPECT_EQ(keys[1].time, scene.motion.shutter.close);
+    EXPECT_TRUE(keys[0].to_world == scene.instances[instance].to_world);
+    const Affine &from = keys[0].to_world, &to = keys[1].to_world;
+    EXPECT_NEAR(glm::length(to.translation() - from.translation()), 0.0f, 1e-3f);
+    const Vec3 up(from.vector({0, 1, 0})), tilted(to.vector({0, 1, 0}));
+    EXPECT_NEAR(glm::length(tilted), glm::length(up), 1e-4f);
+    EXPECT_GT(tilted.x, up.x);
+    const float turn = std::atan2(tilted.x, tilted.y) - std::atan2(up.x, up.y);
+    least = std::min(least, glm::degrees(turn)), most = std::max(most, glm::degrees(turn));
+  }
+  EXPECT_TRUE(least > 1.99f && least < 2.5f) << least;
+  EXPECT_TRUE(most > 11.5f && most < 12.01f) << most;
+}
+
+TEST(Forest, IsReadFromItsName) {
+  const auto parse = [](const char* text) { return parse_forest(parse_scene_name(text)); };
+  EXPECT_EQ(parse("instances").trees, 10'000u);
+  EXPECT_EQ(parse("instances:2K").trees, 2'000u);
+  EXPECT_EQ(parse("instances:2K").percent, 0.0f);
+  EXPECT_EQ(parse("instances:50:12.5").trees, 50u);
+  EXPECT_EQ(parse("instances:50:12.5").percent, 12.5f);
+  for (const char* text :
+       {"instances:50:101", "instances:50:-1", "instances:50:", "instances:50:1:2"})
+    expect_error([&] { parse(text); }, "expected 0 to 100 percent of the trees in instances:N:P");
+  expect_error([&] { parse("instances:0:5"); }, "a whole number N from 1 to 100000000");
+}
+
 TEST(Forest, TransformsAreOfEveryKind) {
   const SceneData scene = make_forest_scene(200);
   MeanEstimate shear, stretch;

@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PTEXP = Path(os.environ.get("PTEXP", ROOT / "build" / "release" / "src" / "ptexp")).resolve()
 REPRODUCE = ROOT / "scripts" / "reproduce"
 # They need another build, or RT cores.
-NOT_IN_IT = {"compare_builds", "divergence", "hardware"}
+NOT_IN_IT = {"compare_builds", "divergence", "hardware", "motion"}
 BUDGET_S = {"all": 36 * 60, "ten": 600, "minute": 60}
 
 # A ptexp that dies where it is to keep states of random numbers, unless the file `mended` is there.

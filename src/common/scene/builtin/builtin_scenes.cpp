@@ -84,9 +84,9 @@ SceneData make_statue(const SceneRequest& request) {
 }
 
 SceneData make_instances(const SceneRequest& request) {
-  const std::uint64_t count = parse_count(request.name, 10'000, forest_least, forest_most);
-  check_instance_memory(request, count);
-  return make_forest_scene(count);
+  const ForestSettings settings = parse_forest(request.name);
+  check_instance_memory(request, settings.trees);
+  return make_forest_scene(settings.trees, settings.percent);
 }
 
 const SceneInfo& find_scene(const SceneName& name) {
@@ -129,7 +129,8 @@ const std::vector<SceneInfo>& scene_list() {
       {"terrain", "N", "mountains of N triangles under a sky, 1M unless N is given", make_terrain},
       {"statue", "N", "a carved knot of N triangles under a sky and a lamp, 1M unless N is given",
        make_statue},
-      {"instances", "N", "a forest of N trees, 10K unless N is given, repeating four",
+      {"instances", "N[:P]",
+       "a forest of N trees (10K), repeating four; P (0) % of them sway while the shutter is open",
        make_instances},
       {"boxes", "SCALE", "512 boxes in a closed room, lit by a lamp; all lengths times SCALE",
        [](const SceneRequest& request) { return make_boxes_scene(parse_scale(request.name)); }},

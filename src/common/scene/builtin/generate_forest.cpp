@@ -105,7 +105,7 @@ namespace {
 
 constexpr double spacing = 3.5;  ///< of trees; they are about 4 units tall
 constexpr std::uint32_t ground_seed = 3;
-constexpr std::uint32_t instance_seed = 1000;
+constexpr std::uint32_t instance_seed = 1000, sway_seed = 1u << 31;
 
 /// Ground over a square around the origin: waves that grow with it.
 class Ground {
@@ -170,9 +170,37 @@ Instance plant_tree(const Ground& ground, std::uint32_t index) {
                      scale({size * wide_x, size, size * wide_z})};
 }
 
+/// How far the wind tilts a tree about its foot while the shutter is open.
+TransformKey tilted(const Affine& to_world, std::uint32_t index) {
+  WorldRandom random(sway_seed + index);
+  const Vec3 foot = to_world.translation();
+  const Affine tilt = rotate({0, 0, 1}, random.next(-12.0f, -2.0f));  // towards x
+  return {Shutter().close, translate(foot) * tilt * translate(-foot) * to_world};
+}
+
+void let_sway(SceneData& scene, float percent) {
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    if (100.0f * to_unit_float(2654435769u * i) >= percent) continue;
+    const Affine& to_world = scene.instances[i].to_world;
+    scene.motion.instances.push_back({i, {{Shutter().open, to_world}, tilted(to_world, i)}});
+  }
+}
+
 }  // namespace
 
-SceneData make_forest_scene(std::uint64_t count) {
+ForestSettings parse_forest(const SceneName& scene) {
+  ForestSettings settings;
+  std::string_view rest = scene.parameter;
+  const bool has_percent = rest.find(':') != std::string_view::npos;
+  const std::string count(next_part(rest));
+  settings.trees =
+      parse_count({scene.full, scene.name, count}, settings.trees, forest_least, forest_most);
+  if (has_percent && !read_part(rest, 0.0f, 100.0f, settings.percent))
+    refuse_part(scene, 'P', rest, "0 to 100 percent of the trees", "instances:N:P");
+  return settings;
+}
+
+SceneData make_forest_scene(std::uint64_t count, float percent) {
   if (count < forest_least || count > forest_most) {
     throw Error(fmt::format("forest of {} instances: expected from {} to {}", count, forest_least,
                             forest_most));
@@ -192,6 +220,7 @@ SceneData make_forest_scene(std::uint64_t count) {
   scene.instances.resize(count);
   tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(count),
                     [&](std::uint32_t i) { scene.instances[i] = plant_tree(ground, i); });
+  let_sway(scene, percent);
   const auto side = static_cast<float>(ground.side());
   scene.sky = {{0.05f, 0.08f, 0.12f}, {1.25f, 1.4f, 1.6f}};  // overcast: brightest above
   scene.camera = {{0, 0.1f * side + 4, 0.55f * side + 4},

@@ -49,8 +49,17 @@ std::vector<Mesh> generate_trees();
 /// `count` trees on wavy ground: each is an instance, placed by the R2 sequence (Roberts 2018) over
 /// a square whose area grows with their number, turned about its axis, scaled by another factor
 /// along each axis and sheared as if bent by wind. An instance depends on its number and on `count`
-/// alone. The ground is one mesh of group 0. Throws Error unless 1 <= count <= 100 million.
-SceneData make_forest_scene(std::uint64_t count);
+/// alone. The ground is one mesh of group 0. `percent` of the trees sway while the shutter is open.
+/// Throws Error unless 1 <= count <= 100 million.
+SceneData make_forest_scene(std::uint64_t count, float percent = 0.0f);
+
+struct ForestSettings {
+  std::uint64_t trees = 10'000;
+  float percent = 0.0f;  ///< of them that sway
+};
+
+/// Reads instances:N:P, of which the last part or both may be left out. Throws Error.
+ForestSettings parse_forest(const SceneName& scene);
 
 struct CloudSettings {
   std::uint32_t side = 128;  ///< N: voxels along each axis, from 2 to cloud_side_most
