@@ -218,7 +218,8 @@ TEST(Motion, TreesAndBruteForceMeetTheSameAndWhatStandsThere) {
     options.accel = accel, options.builder = TreeBuilder::sah;
     return build_triangle_tree(scene.meshes, scene.instances, options, scene.motion.tracks());
   };
-  const TriangleTreeData brute = build(AccelKind::brute), tree = build(AccelKind::bvh2);
+  const TriangleTreeData brute = build(AccelKind::brute), tree = build(AccelKind::bvh2),
+                         wide = build(AccelKind::cwbvh);
   const Motion& motion = scene.motion.prepared->view;
   int hits = 0, differ = 0;
   for (int t = 0; t < 20; ++t) {
@@ -238,6 +239,17 @@ TEST(Motion, TreesAndBruteForceMeetTheSameAndWhatStandsThere) {
       traverse_triangles<Accel::bvh2, true>(tree.view(), ray, any);
       const Hit a = by_brute.result(), b = by_tree.result(), expected = closest_hit(still, ray);
       ASSERT_EQ(a.t, b.t);
+      MovingQuery<ClosestTriangle> by_wide(0.0f, infinite_distance, motion, time);
+      MovingQuery<ClosestTriangle> by_avx2(0.0f, infinite_distance, motion, time);
+      MovingQuery<AnyTriangle> any_wide(0.0f, infinite_distance, motion, time);
+      traverse_triangles<Accel::cwbvh, true>(wide.view(), ray, by_wide);
+      ASSERT_EQ(a.t, by_wide.result().t);
+      if (has_avx2()) {
+        traverse_triangles<Accel::cwbvh_avx2, true>(wide.view(), ray, by_avx2);
+        traverse_triangles<Accel::cwbvh_avx2, true>(wide.view(), ray, any_wide);
+        ASSERT_EQ(a.t, by_avx2.result().t);
+        ASSERT_EQ(a.is_miss(), !any_wide.result());
+      }
       ASSERT_EQ(a.is_miss(), !any.result());
       hits += !a.is_miss();
       differ += a.is_miss() != expected.is_miss() ||
@@ -325,7 +337,7 @@ TEST(Motion, RefusesWhatItDoesNotKnow) {
   };
   expect_refused(
       "--accel cwbvh: no kernel on the CPU renders scene 'moving room' (triangles, "
-      "instances, motion) so; expected --accel brute or bvh2",
+      "instances, motion, deforming meshes) so; expected --accel brute or bvh2",
       refusal(moving_room(), [](Options& o) { o.accel = AccelKind::cwbvh; }));
   SceneData glowing = moving_room();
   glowing.meshes[3].material = glowing.meshes[2].material;

@@ -291,7 +291,7 @@ class Planner {
   /// blocks; for threads that follow rays alone binary ones are faster.
   std::pair<Accel, std::string> automatic_tree() const {
     const char* const alone = "rays are traced one by one, for which binary trees are faster";
-    if (scene_.has_motion) return {Accel::bvh2, "only binary trees know motion blur"};
+    if (scene_.deforms) return {Accel::bvh2, "only binary trees know meshes that deform"};
     if (has_open_media()) return {Accel::bvh2, alone};
     if (is_on_gpu(Mode::megakernel)) {
       if (plan_.megakernel == MegakernelKind::loop) return {Accel::bvh2, alone};

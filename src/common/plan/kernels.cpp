@@ -30,7 +30,8 @@ constexpr BodyName body_names[] = {
 constexpr const char* source_names[] = {"philox", "xorwow", "any sampler"};
 constexpr const char* geometry_names[] = {"spheres, quads", "triangles", "all primitives"};
 constexpr const char* lighting_names[] = {"sky", "sky, emitters", "all lights"};
-constexpr const char* content_names[] = {"spheres", "instances", "boundaries without a BSDF"};
+constexpr const char* content_names[] = {"spheres", "instances", "boundaries without a BSDF",
+                                         "deforming meshes"};
 
 const BodyName& name_of(KernelBody body) { return body_names[static_cast<int>(body)]; }
 

@@ -74,7 +74,7 @@ constexpr EnumSet<ExtraRecords> if_built(EnumSet<ExtraRecords> records) {
 enum class Extras { plain, with_masks, with_media, with_sparse, with_motion };
 
 /// What some kernels cannot have in a scene although its SceneTraits allow it.
-enum class Content { spheres, instances, open_boundaries };
+enum class Content { spheres, instances, open_boundaries, deforming };
 
 struct KernelRow {
   bool on_cuda;
@@ -124,6 +124,7 @@ inline constexpr KernelRow table[] = {
     {cpu,  {serial, loop, stages, fused}, trees | brute, mixed, full, with_masks, sampler},
     {cpu,  {serial, loop, stages, fused}, {bvh2, cwbvh, brute}, mixed, full, with_media, sampler},
     {cpu,  {serial, loop, stages, fused}, {bvh2, brute}, mixed, full, with_motion, sampler},
+    {cpu,  {serial, loop, stages, fused}, {cwbvh, cwbvh_avx2}, mixed, full, with_motion, sampler, deforming},
     {cuda, {loop, stages, fused}, trees, triangles, full, plain, sampler},
     {cuda, {loop, stages}, bvh2, mixed, full, plain, sampler},
     {cuda, {loop, stages}, bvh2, mixed, full, with_masks, sampler},

@@ -66,6 +66,7 @@ EnumSet<Content> contents_of(const SceneProperties& scene) {
   if (scene.spheres > 0) contents = contents | Content::spheres;
   if (scene.instances > 0) contents = contents | Content::instances;
   if (scene.has_open_boundaries) contents = contents | Content::open_boundaries;
+  if (scene.deforms) contents = contents | Content::deforming;
   return contents;
 }
 
@@ -105,6 +106,7 @@ std::string scene_text(const KernelNeed& need, const Options& o, const SceneProp
       {!is_specialized && scene.spheres > 0, "spheres"},
       {scene.instances > 0, "instances"},
       {scene.has_motion, "motion"},
+      {scene.deforms, "deforming meshes"},
       {scene.has_masks, "masks, a far plane or hidden emitters"},
       {scene.has_media, "media"},
       {need.scene.has_sparse, "sparse grids"},

@@ -21,6 +21,7 @@ struct SceneProperties {
   bool is_primitive_only = false;    ///< nothing that the paper's scenes have not
   bool has_motion = false;           ///< something moves while the shutter is open
   bool has_moving_surfaces = false;  ///< not the camera alone
+  bool deforms = false;              ///< meshes do
   bool has_masks = false;            ///< triangles that not all rays meet
   bool has_media = false;            ///< between surfaces
   bool has_sparse = false;           ///< grids of media

@@ -30,9 +30,8 @@ struct Any {
 
 /// Whether plans have kernels for it (plan/kernels.h).
 constexpr bool is_traced(Accel accel, bool has_masks, bool has_motion) {
-  if (has_motion) return accel == Accel::brute || accel == Accel::bvh2;
-  if (has_masks) return accel != Accel::embree && accel != Accel::cwbvh_avx2;
-  return true;
+  if (accel == Accel::embree) return !has_masks && !has_motion;
+  return accel != Accel::cwbvh_avx2 || !has_masks;
 }
 
 /// Null where it is not traced.

@@ -15,13 +15,13 @@ bool has_avx2() {
   return has;
 }
 
-namespace {
-
 template <class Query>
-void traverse(const TriangleTree& tree, const Ray& ray, Query& query) {
+void traverse_triangles_avx2(const TriangleTree& tree, const Ray& ray, Query& query) {
   tree.instance_count > 0 ? traverse_cwbvh_avx2<true>(tree, ray, query)
                           : traverse_cwbvh_avx2<false>(tree, ray, query);
 }
+
+namespace {
 
 struct TurnsByAvx2 {
   using Lanes = Lanes8;
@@ -54,14 +54,10 @@ const BruteBlock* brute_block_avx2() { return has_avx2() ? &brute_block_by<Lanes
 
 bool has_avx2() { return false; }
 
-namespace {
-
 template <class Query>
-void traverse(const TriangleTree& tree, const Ray& ray, Query& query) {
+void traverse_triangles_avx2(const TriangleTree& tree, const Ray& ray, Query& query) {
   traverse_cwbvh<true>(tree, ray, query);
 }
-
-}  // namespace
 
 const TreeBlock* tree_block_avx2() { return nullptr; }
 
@@ -69,17 +65,11 @@ const BruteBlock* brute_block_avx2() { return nullptr; }
 
 #endif
 
-Hit closest_triangle_avx2(const TriangleTree& tree, const Ray& ray, float t_min, float t_max) {
-  ClosestTriangle query(t_min, t_max);
-  traverse(tree, ray, query);
-  return query.result();
-}
-
-bool any_triangle_avx2(const TriangleTree& tree, const Ray& ray, float t_min, float t_max) {
-  AnyTriangle query(t_min, t_max);
-  traverse(tree, ray, query);
-  return query.result();
-}
+template void traverse_triangles_avx2(const TriangleTree&, const Ray&, ClosestTriangle&);
+template void traverse_triangles_avx2(const TriangleTree&, const Ray&, AnyTriangle&);
+template void traverse_triangles_avx2(const TriangleTree&, const Ray&,
+                                      MovingQuery<ClosestTriangle>&);
+template void traverse_triangles_avx2(const TriangleTree&, const Ray&, MovingQuery<AnyTriangle>&);
 
 const TreeBlock* tree_block() {
   static const TreeBlock* const best =

@@ -74,7 +74,8 @@ SceneProperties properties_of(const SceneData& scene) {
   if (!scene.instances.empty()) properties.tree_groups = groups_in_use(scene.instances).size();
   properties.is_primitive_only = has_primitives_only(scene);
   properties.has_motion = scene.moves();
-  properties.has_moving_surfaces = scene.deforms() || !scene.motion.instances.empty();
+  properties.deforms = scene.deforms();
+  properties.has_moving_surfaces = properties.deforms || !scene.motion.instances.empty();
   properties.has_masks =
       is_limited(scene.camera) || std::ranges::any_of(scene.materials, is_masked);
   properties.has_media = needs_media(scene);
