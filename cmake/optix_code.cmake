@@ -10,7 +10,10 @@ file(WRITE ${OUTPUT}.ptx "${text}")
 file(ARCHIVE_CREATE OUTPUT ${OUTPUT}.gz PATHS ${OUTPUT}.ptx FORMAT raw
      COMPRESSION GZip COMPRESSION_LEVEL 9)
 file(READ ${OUTPUT}.gz bytes HEX)
-string(REGEX REPLACE "^(........)........" "\\100000000" bytes "${bytes}")  # no time
+# Without the time; ^ would match again behind each match.
+string(SUBSTRING "${bytes}" 0 8 head)
+string(SUBSTRING "${bytes}" 16 -1 tail)
+set(bytes "${head}00000000${tail}")
 string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
 string(REPEAT "." 80 line)
 string(REGEX REPLACE "(${line})" "\\1\n" bytes "${bytes}")
