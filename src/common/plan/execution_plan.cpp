@@ -292,6 +292,8 @@ class Planner {
   std::pair<Accel, std::string> automatic_tree() const {
     const char* const alone = "rays are traced one by one, for which binary trees are faster";
     if (scene_.deforms) return {Accel::bvh2, "only binary trees know meshes that deform"};
+    if (scene_.has_motion && device_.is_cuda)
+      return {Accel::bvh2, "a GPU's kernels for motion blur know binary trees alone"};
     if (has_open_media()) return {Accel::bvh2, alone};
     if (is_on_gpu(Mode::megakernel)) {
       if (plan_.megakernel == MegakernelKind::loop) return {Accel::bvh2, alone};
