@@ -18,6 +18,7 @@ from lib import harness
 from lib import program as ptexp
 from lib.grouped import measure_table
 from lib.harness import Configuration, Experiment, HarnessError
+from lib.options import add_image_options
 from lib.provenance import scene_hash
 
 SCENES = ["cornell", "dial:8:0:closed", "dial:8:1:closed", "statue:1M"]
@@ -36,10 +37,7 @@ ALL = "all kernels"
 
 def add_arguments(parser):
     parser.set_defaults(repeat=3, rounds=1, warmup=1)
-    parser.add_argument("--size", type=int, default=1024, metavar="N",
-                        help="width and height in pixels [%(default)s]")
-    parser.add_argument("--spp", type=int, default=16, metavar="N",
-                        help="samples per pixel [%(default)s]")
+    add_image_options(parser)
 
 
 def configurations(arguments, _device):

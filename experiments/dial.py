@@ -16,6 +16,7 @@ import sys
 from lib import harness
 from lib.harness import Configuration, Experiment, Plot
 from lib.image_check import with_options
+from lib.options import add_image_options
 from lib.ratios import ratio_labels, set_ratios
 
 FIGURES = ["open", "closed"]
@@ -39,10 +40,7 @@ def add_arguments(parser):
                         help="numbers of materials, 1 to 32 [%(default)s]")
     parser.add_argument("--coherences", type=float, nargs="+", default=COHERENCES, metavar="C",
                         help="0 noise, 1 stripes [%(default)s]")
-    parser.add_argument("--size", type=int, default=1024, metavar="N",
-                        help="width and height in pixels [%(default)s]")
-    parser.add_argument("--spp", type=int, default=16, metavar="N",
-                        help="samples per pixel [%(default)s]")
+    add_image_options(parser)
     parser.add_argument("--accel", default="bvh2", metavar="NAME",
                         help="the structure that all variants trace [%(default)s]")
 

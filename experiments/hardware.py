@@ -17,6 +17,7 @@ import sys
 from lib import harness
 from lib.harness import Configuration, Experiment, Plot
 from lib.kernels import kernels_of
+from lib.options import add_image_options
 from lib.ratios import ratio_labels, set_ratios
 from lib.scene_files import add_scene_files, scene_files, short_name
 
@@ -40,10 +41,7 @@ PARTS = {"median": "median", "min": "max", "max": "min"}
 
 def add_arguments(parser):
     add_scene_files(parser)
-    parser.add_argument("--size", type=int, default=1024, metavar="N",
-                        help="width and height in pixels [%(default)s]")
-    parser.add_argument("--spp", type=int, default=8, metavar="N",
-                        help="samples per pixel [%(default)s]")
+    add_image_options(parser, spp=8)
     parser.set_defaults(repeat=5, rounds=1, warmup=1)
 
 

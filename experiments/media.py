@@ -17,7 +17,8 @@ import sys
 
 from lib import harness
 from lib.harness import Configuration, Experiment, Plot
-from lib.ratios import ratio_labels, set_ratios
+from lib.options import add_image_options
+from lib.ratios import ns_per_ray, ratio_labels, set_ratios
 
 DEPTHS = [0.1, 0.3, 1, 3, 10, 30, 100]
 ALBEDOS = [0, 0.5, 0.9, 0.99, 0.999]
@@ -39,10 +40,7 @@ VARIANTS = {
 
 def add_arguments(parser):
     parser.set_defaults(repeat=6, rounds=2, warmup=1)
-    parser.add_argument("--size", type=int, default=1024, metavar="N",
-                        help="width and height in pixels [%(default)s]")
-    parser.add_argument("--spp", type=int, default=16, metavar="N",
-                        help="samples per pixel [%(default)s]")
+    add_image_options(parser)
     parser.add_argument("--max-depth", type=int, default=128, metavar="N",
                         help="rays of a path; roulette begins after 16 [%(default)s]")
 
@@ -96,8 +94,7 @@ def finish(rows, _arguments):
     for row in rows:
         if not row["kernel_ms_median"]:
             continue
-        rays = int(row["rays"]) + int(row["shadow_rays"])
-        row["ns_per_ray"] = f"{1e6 * float(row['kernel_ms_median']) / rays:.4g}"
+        row["ns_per_ray"] = ns_per_ray(row)
         quantity, _, storage = row["figure"].partition(", ")
         copy = copies.get((f"{quantity}, dense", row["value"], row["variant"]))
         if storage == "sparse" and copy and copy["kernel_ms_median"]:

@@ -12,7 +12,8 @@ import sys
 
 from lib import harness
 from lib.harness import Configuration, Experiment, Plot
-from lib.ratios import ratio_labels, set_ratios
+from lib.options import add_image_options
+from lib.ratios import ns_per_ray, ratio_labels, set_ratios
 
 PERCENTS, QUICK_PERCENTS = [0, 1, 10, 100], [0, 50]
 TREES, QUICK_TREES = ["1K", "10K", "100K"], ["20"]
@@ -27,10 +28,7 @@ VARIANTS = {
 
 def add_arguments(parser):
     parser.set_defaults(repeat=6, rounds=2, warmup=1)
-    parser.add_argument("--size", type=int, default=1024, metavar="N",
-                        help="width and height in pixels [%(default)s]")
-    parser.add_argument("--spp", type=int, default=16, metavar="N",
-                        help="samples per pixel [%(default)s]")
+    add_image_options(parser)
 
 
 def configurations(arguments, _device):
@@ -56,9 +54,8 @@ def finish(rows, _arguments):
     set_ratios(rows, BASE, scene_of)
     measured = [row for row in rows if row["kernel_ms_median"]]
     for row in measured:
-        rays = int(row["rays"]) + int(row["shadow_rays"] or 0)
         for part in PARTS:
-            row[f"ns_per_ray_{part}"] = f"{1e6 * float(row[f'kernel_ms_{part}']) / rays:.4g}"
+            row[f"ns_per_ray_{part}"] = ns_per_ray(row, part)
     still = {(row["trees"], row["variant"]): float(row["ns_per_ray_median"]) for row in measured
              if int(row["percent"]) == 0}
     for row in measured:

@@ -6,6 +6,14 @@ from pathlib import Path
 from lib.program import PROGRAMS, ROOT
 
 
+def add_image_options(parser, spp=16):
+    """--size and --spp of an experiment whose images are all alike."""
+    parser.add_argument("--size", type=int, default=1024, metavar="N",
+                        help="width and height in pixels [%(default)s]")
+    parser.add_argument("--spp", type=int, default=spp, metavar="N",
+                        help="samples per pixel [%(default)s]")
+
+
 def parse_arguments(experiment, command):
     parser = argparse.ArgumentParser(description=experiment.question)
     add = parser.add_argument

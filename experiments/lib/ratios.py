@@ -28,6 +28,12 @@ def set_ratios(rows, base_variant, scene_of):
             row[f"ratio_{part}"] = f"{ratio:.4f}"
 
 
+def ns_per_ray(row, part="median"):
+    """A row's time by its rays and shadow rays, in ns."""
+    rays = int(row["rays"]) + int(row["shadow_rays"])
+    return f"{1e6 * float(row[f'kernel_ms_{part}']) / rays:.4g}"
+
+
 def runs_of(row):
     """The times of a row's repeats, a list for each round; None where the table does not keep them."""
     if not row.get("kernel_ms_runs") or not row.get("rounds"):
