@@ -51,11 +51,12 @@ if(PTEXP_CUDA_FOUND)
   if(CMAKE_CUDA_COMPILER_VERSION VERSION_GREATER_EQUAL 12.8)
     set(compression --compress-mode=size)
   endif()
-  # 20012: GLM 0.9.9 marks defaulted members __host__ __device__.
+  # 20012: GLM 0.9.9 marks defaulted members __host__ __device__. Without --fmad=false each compiler
+  # (ptxas, OptiX's) contracts what it likes: docs/design/bit_equality.md, 'Rounding'.
   target_compile_options(ptexp_cuda_flags INTERFACE
     $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr --diag-suppress=20012
     ${compression} -Xcompiler=-Wall,-Wno-unknown-pragmas,-ffp-contract=off>
     $<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<BOOL:${PTEXP_LINEINFO}>>:-lineinfo>
     $<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<BOOL:${PTEXP_WERROR}>>:-Werror=all-warnings>
-    $<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<BOOL:${PTEXP_FAST_MATH}>>:--use_fast_math>)
+    $<$<COMPILE_LANGUAGE:CUDA>:$<IF:$<BOOL:${PTEXP_FAST_MATH}>,--use_fast_math,--fmad=false>>)
 endif()

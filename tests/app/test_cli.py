@@ -467,8 +467,8 @@ class Calibrate(CommandLine):
         self.assertNotIn("measured here", run.stdout)
         self.assertEqual(len(run.stderr.splitlines()), 1, run.stderr)
         self.assertIn(f"{file}: expected an object of JSON; ignored", run.stderr)
-        self.assert_refused(self.with_cache(*self.RENDER, "--calibration", file, "--output", "b.ppm"),
-                            file)
+        self.assert_refused(self.with_cache(*self.RENDER, "--device", "cpu", "--calibration", file,
+                                            "--output", "b.ppm"), file)
 
     def test_what_it_refuses(self):
         for arguments, words in ((("--spp", "2"), "--spp"), (("cornell",), "cornell"),
