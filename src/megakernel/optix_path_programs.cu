@@ -18,7 +18,8 @@ namespace pt {
 
 struct PathApi : optix::DeviceApi {
   static __device__ __forceinline__ const OptixPathParams& params() { return ::params.paths; }
-  static __device__ __forceinline__ MaskView masks() { return MaskView(::params.paths.world); }
+  static __device__ __forceinline__ const Scene& world() { return ::params.paths.world; }
+  static __device__ __forceinline__ MaskView masks() { return MaskView(world()); }
 };
 
 }  // namespace pt

@@ -125,10 +125,11 @@ TEST_F(CudaOptix, GivesTheRoomsOfOurTracer) {
                                                      {"lights", lights},
                                                      {"masks", masked_room()},
                                                      {"limited", limited_room()},
+                                                     {"forest", masked_forest()},
                                                      {"media", filled_glasses(false)},
                                                      {"media and masks", filled_glasses(true)}};
   for (const auto& [name, scene] : rooms) {
-    const Rendered expected = render_room(scene, {{"accel", "cwbvh"}});
+    const Rendered expected = render_room(scene, {});
     for (const char* hits : judged) {
       SCOPED_TRACE(std::string(name) + ", " + hits);
       expect_images(name, hits, render_room(scene, {{"accel", "optix"}, {"optix-hits", hits}}),
@@ -143,7 +144,8 @@ TEST_F(CudaOptix, GivesTheRoomsOfOurMegakernel) {
   const std::pair<const char*, SceneData> rooms[] = {{"lights", lights},
                                                      {"materials", material_room(false)},
                                                      {"masks", masked_room()},
-                                                     {"limited", limited_room()}};
+                                                     {"limited", limited_room()},
+                                                     {"forest", masked_forest()}};
   for (const auto& [name, scene] : rooms) {
     const Rendered expected = render_room(scene, {}, "megakernel");
     for (const char* hits : judged) {

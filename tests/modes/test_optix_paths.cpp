@@ -16,7 +16,8 @@ const OptixPathParams* path_params = nullptr;
 
 struct PathApi : EmulatedApi {
   static const OptixPathParams& params() { return *path_params; }
-  static MaskView masks() { return MaskView(path_params->world); }
+  static const Scene& world() { return path_params->world; }
+  static MaskView masks() { return MaskView(world()); }
 };
 
 OptixPrograms path_programs() {
@@ -143,8 +144,8 @@ TEST_P(OptixPaths, WithRouletteGiveTheSerialImage) {
 
 TEST_P(OptixPaths, WithMasksGiveTheSerialImage) {
   if (GetParam() == OptixHits::built_in) GTEST_SKIP() << "masks are judged by our programs alone";
-  expect_equal(masked_room());
-  expect_equal(limited_room());
+  for (const SceneData& scene : {masked_room(), limited_room(), masked_forest()})
+    expect_equal(scene);
 }
 
 // By what they hit: nothing, or one of the room's BSDFs; OptiX knows no BSDF.

@@ -58,6 +58,7 @@ inline Settings settings_of(KernelBody body) {
     case fused:
       return {{"mode", "wavefront"}, {"stages", "fused"}, {"finish-paths", "0"}};
     case optix:
+    case queues:
       break;  // test_optix_cuda.cpp
   }
   return {};

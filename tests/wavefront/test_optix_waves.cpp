@@ -19,7 +19,8 @@ namespace {
 const OptixQueueParams* queue_params = nullptr;
 
 struct QueueApi : EmulatedApi {
-  static MaskView masks() { return MaskView(queue_params->world); }
+  static const Scene& world() { return queue_params->world; }
+  static MaskView masks() { return MaskView(world()); }
 };
 
 template <OptixHits hits>
@@ -187,9 +188,9 @@ TEST_P(OptixWavesOf, MediaGiveTheSerialImage) { expect_equal(filled_glasses(fals
 
 TEST_P(OptixWavesOf, MasksGiveTheSerialImage) {
   if (GetParam() == OptixHits::built_in) GTEST_SKIP() << "masks are judged by our programs alone";
-  expect_equal(masked_room());
-  expect_equal(limited_room());
-  expect_equal(filled_glasses(true));
+  for (const SceneData& scene :
+       {masked_room(), limited_room(), masked_forest(), filled_glasses(true)})
+    expect_equal(scene);
 }
 
 }  // namespace

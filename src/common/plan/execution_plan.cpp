@@ -217,12 +217,13 @@ class Planner {
   void choose_optix() {
     check_optix(o_, scene_, device_, plan_);
     const bool is_megakernel = plan_.mode == Mode::megakernel;
-    if (!(is_megakernel || warps_can_persist()) || plan_.accel != Accel::cwbvh)
-      throw Error(
-          fmt::format("--accel optix: scene '{}' has no kernel for it; OptiX traces what "
-                      "persistent warps can: triangles with masks or instances, media whose "
-                      "boundaries have a BSDF, --compaction atomic",
-                      scene_.name));
+    const bool has_queues = compaction_info(o_.compaction).appends && !has_unbounded_media();
+    if (!(is_megakernel || has_queues) || plan_.accel != Accel::cwbvh)
+      throw Error(fmt::format(
+          "--accel optix: scene '{}' has no kernel for it; OptiX traces appended queues "
+          "(--compaction atomic), media without sparse grids whose boundaries have a "
+          "BSDF, and wide trees",
+          scene_.name));
     plan_.traces_by_optix = true;
     decide("optix-hits", to_string(plan_.optix_hits),
            plan_.optix_hits == OptixHits::built_in
@@ -320,10 +321,15 @@ class Planner {
   /// Media through which rays are traced one by one: a shadow ray goes on behind the first surface.
   /// Blocks on CUDA, which take the last paths, know no flights that pause and no sparse grids.
   bool has_open_media() const {
-    const bool is_closed = scene_.has_only_triangles() && !scene_.has_open_boundaries &&
-                           o_.stages != Stages::fused && o_.wave_collisions == 0 &&
-                           (!device_.is_cuda || (blocks_have_room() && !scene_.has_sparse));
-    return scene_.has_media && !is_closed;
+    const bool is_closed = scene_.has_only_triangles() && o_.stages != Stages::fused &&
+                           (!device_.is_cuda || blocks_have_room());
+    return has_unbounded_media() || (scene_.has_media && !is_closed);
+  }
+
+  /// Media whose rays nobody traces as a queue.
+  bool has_unbounded_media() const {
+    return scene_.has_media && (scene_.has_open_boundaries || o_.wave_collisions > 0 ||
+                                (device_.is_cuda && scene_.has_sparse));
   }
 
   bool warps_can_persist() const {
@@ -385,7 +391,8 @@ class Planner {
   }
 
   void choose_persistence() {
-    const bool can = warps_can_persist() && plan_.accel == Accel::cwbvh && !plan_.fused;
+    const bool can = (plan_.traces_by_optix || warps_can_persist()) &&
+                     plan_.accel == Accel::cwbvh && !plan_.fused;
     plan_.persistent_warps = o_.persistent && can;
     decide("persistent", plan_.persistent_warps ? "on" : "off",
            plan_.traces_by_optix    ? "whole queues of rays, by OptiX"

@@ -26,6 +26,7 @@ constexpr BodyName body_names[] = {
     {KernelBody::warps, Mode::wavefront, "wavefront warps", "--persistent on"},
     {KernelBody::fused, Mode::wavefront, "wavefront fused", "--stages fused"},
     {KernelBody::optix, Mode::megakernel, "megakernel OptiX", "--accel optix"},
+    {KernelBody::queues, Mode::wavefront, "wavefront OptiX", "--accel optix"},
 };
 constexpr const char* source_names[] = {"philox", "xorwow", "any sampler"};
 constexpr const char* geometry_names[] = {"spheres, quads", "triangles", "all primitives"};

@@ -25,6 +25,7 @@ enum class KernelBody {
   warps,   ///< wavefront: the same, but persistent warps trace the queues of rays
   fused,   ///< wavefront: one stage traces and shades
   optix,   ///< megakernel: the loop in OptiX's ray generation program
+  queues,  ///< wavefront: OptiX traces the queues of rays; the stages are those of warps
 };
 
 /// Where a kernel's random numbers come from: Philox or XORWOW, inlined, or any sampler.
@@ -137,10 +138,11 @@ inline constexpr KernelRow table[] = {
     {cuda, {blocks, warps}, cwbvh, mixed, full, plain, sampler, spheres},
     {cuda, {blocks, warps}, cwbvh, mixed, full, with_masks, sampler, {spheres, instances}},
     {cuda, {blocks, warps}, cwbvh, mixed, full, with_media, sampler, {spheres, instances, open_boundaries}},
-    // One program; its rays are OptiX's.
-    {cuda, optix, cwbvh, triangles, full, plain, sampler},
-    {cuda, optix, cwbvh, mixed, full, plain, sampler, spheres},
-    {cuda, optix, cwbvh, mixed, full, with_masks, sampler, {spheres, instances}},
+    // Rays that OptiX traces.
+    {cuda, {optix, queues}, cwbvh, triangles, full, plain, sampler},
+    {cuda, {optix, queues}, cwbvh, mixed, full, plain, sampler, spheres},
+    {cuda, {optix, queues}, cwbvh, mixed, full, with_masks, sampler, spheres},
+    {cuda, queues, cwbvh, mixed, full, with_media, sampler, {spheres, open_boundaries}},
     // With --path-bytes.
     {cuda, loop, bvh2, triangles, full, plain, sampler, {}, global, divergent, in_registers},
     {cuda, {vote, blocks, warps}, cwbvh, triangles, full, plain, sampler, {}, global, divergent, in_memory},

@@ -81,6 +81,7 @@ KernelBody body_of(const ExecutionPlan& plan, bool on_cuda) {
              : plan.megakernel == MegakernelKind::vote           ? vote
                                                                  : blocks;
     default:
+      if (plan.traces_by_optix) return queues;
       return plan.fused ? fused : plan.persistent_warps ? warps : stages;
   }
 }
@@ -298,9 +299,6 @@ void check_optix(const Options& o, const SceneProperties& scene, const DevicePro
     if (scene.has_media)
       refuse(fmt::format("scene '{}' has some, expected --mode wavefront", scene.name),
              "its megakernel knows no media");
-    if (!scene.has_plain_instances())
-      refuse(fmt::format("scene '{}' has both", scene.name),
-             "masks and instances are not traced together");
     if (plan.megakernel != MegakernelKind::loop)
       refuse("expected --kernel loop, not " + to_string(plan.megakernel),
              "its threads follow their paths");

@@ -111,10 +111,10 @@ PT_NOINLINE inline bool mask_hides(MaskView masks, const Triangle* triangles, st
   return passes_mask(masks, ray_key, load_wide(&triangles[slot]), b1, b2, [] { return 0u; });
 }
 
-/// The same where the triangle is at hand (JudgingQuery of trace_optix).
+/// The same where the triangle is at hand (JudgingQuery of trace_optix), also of an instance.
 PT_NOINLINE inline bool judged_mask_hides(MaskView masks, std::uint32_t ray_key, Triangle triangle,
-                                          float b1, float b2) {
-  return passes_mask(masks, ray_key, triangle, b1, b2, [] { return 0u; });
+                                          float b1, float b2, std::uint32_t instance_index) {
+  return passes_mask(masks, ray_key, triangle, b1, b2, [=] { return instance_index; });
 }
 
 }  // namespace pt

@@ -16,7 +16,8 @@ __constant__ OptixQueueMemory params;
 namespace pt {
 
 struct QueueApi : optix::DeviceApi {
-  static __device__ __forceinline__ MaskView masks() { return MaskView(params.queue.world); }
+  static __device__ __forceinline__ const Scene& world() { return params.queue.world; }
+  static __device__ __forceinline__ MaskView masks() { return MaskView(world()); }
 };
 
 }  // namespace pt

@@ -57,4 +57,18 @@ inline SceneData limited_room() {
   return scene;
 }
 
+/// The masked room's leaves in three groups, each of which two instances repeat.
+inline SceneData masked_forest() {
+  SceneData scene = masked_room();
+  scene.name = "masked forest";
+  for (std::size_t i = 0; i < 90; ++i)
+    scene.meshes[i].group = static_cast<std::uint32_t>(1 + i % 3);
+  for (std::uint32_t group = 1; group <= 3; ++group) {
+    const auto turn = 35.0f * static_cast<float>(group);
+    scene.instances.push_back({group, rotate({0, 1, 0}, turn) * scale({0.8f, 1.1f, 0.7f})});
+    scene.instances.push_back({group, translate({0.5f, 0.3f, -0.4f}) * scale({-1, 0.6f, 1})});
+  }
+  return scene;
+}
+
 }  // namespace pt

@@ -17,7 +17,7 @@ namespace pt {
 
 /// A query that asks the scene's masks, by the key of the ray: judged_mask_hides
 /// (transport/mask.h), which is not part of each program, since masks are rare and their code is
-/// long. Scenes with instances have none. Besides OptiX's functions `Api` has masks().
+/// long. Besides OptiX's functions `Api` has world(), the Scene, and masks(), its MaskView.
 template <class Api, class Query>
 class JudgingQuery : public Query {
  public:
@@ -27,9 +27,11 @@ class JudgingQuery : public Query {
       : Query(t_min, t_max), key_(key) {}
 
   PT_OPTIX_FUNCTION bool hides(const Triangle& triangle, const TriangleHit& hit, float t,
-                               std::uint32_t) const {
-    return is_up_to_mask(*this, triangle, t) &&
-           judged_mask_hides(Api::masks(), key_, triangle, hit.b1, hit.b2);
+                               std::uint32_t instance) const {
+    if (!is_up_to_mask(*this, triangle, t)) return false;
+    const TriangleTree& tree = Api::world().triangles;
+    const std::uint32_t index = tree.instance_count > 0 ? tree.instances[instance].index : 0;
+    return judged_mask_hides(Api::masks(), key_, triangle, hit.b1, hit.b2, index);
   }
 
  private:
