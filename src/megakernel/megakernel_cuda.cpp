@@ -24,7 +24,7 @@ void MegakernelCuda::make_optix() {
   if (!plan_.traces_by_optix) return;
   const OptixPathChoices choices{plan_.optix_hits, plan_.reorder};
   optix_memory_ = std::make_unique<CudaOptixMemory>(stream());
-  optix_ = std::make_unique<OptixTracer>(*optix_memory_, scene_.triangles, plan_.optix_hits,
+  optix_ = std::make_unique<OptixTracer>(*optix_memory_, scene_, plan_.optix_hits,
                                          optix_path_module(choices));
 }
 

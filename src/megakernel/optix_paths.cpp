@@ -22,7 +22,7 @@ OptixModule optix_path_module(const OptixPathChoices& choices) {
 }
 
 void launch_paths(OptixTracer& tracer, Work work, OptixPathParams params) {
-  params.scene = tracer.scene(params.world.triangles);
+  params.scene = tracer.scene(params.world);
   const std::uint32_t paths = params.samples.path_count;
   const std::uint32_t width = work == Work::pixel    ? params.samples.pixel_count.divisor()
                               : work == Work::sample ? paths

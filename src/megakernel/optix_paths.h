@@ -56,7 +56,8 @@ struct ReorderingApi : Api {
     } else {
       ClosestJudge<Api> query(0.0f, 0.0f);
       from_payload(payload, query);
-      Api::reorder(surface_key(Api::params().world, query.result()), surface_key_bits);
+      const OptixPathParams& p = Api::params();
+      Api::reorder(surface_key(p.world, numbered(p.scene, query.result())), surface_key_bits);
     }
   }
 };
@@ -68,22 +69,23 @@ struct OptixPathRays {
   static PT_OPTIX_FUNCTION Hit closest(const Scene&, const Ray& ray, std::uint32_t key) {
     const OptixPathParams& p = Api::params();
     const ClosestJudge<Api> query(0.0f, ray_length(p.world, ray.direction, key), key);
-    return optix::trace_any_distance(optix::has_far_rays(p.choices.hits), p.scene, ray, query, [&] {
-      switch (p.choices.hits) {
-        case OptixHits::custom:
-          return closest_of<OptixHits::custom>(ray, query);
-        case OptixHits::any_hit:
-          return closest_of<OptixHits::any_hit>(ray, query);
-        default:
-          return closest_of<OptixHits::built_in>(ray, query);
-      }
-    });
+    return optix::trace_any_distance<Api>(optix::has_far_rays(p.choices.hits), p.scene, ray, query,
+                                          [&] {
+                                            switch (p.choices.hits) {
+                                              case OptixHits::custom:
+                                                return closest_of<OptixHits::custom>(ray, query);
+                                              case OptixHits::any_hit:
+                                                return closest_of<OptixHits::any_hit>(ray, query);
+                                              default:
+                                                return closest_of<OptixHits::built_in>(ray, query);
+                                            }
+                                          });
   }
 
   static PT_OPTIX_FUNCTION bool any(const ShadowRay& shadow, std::uint32_t key) {
     const OptixPathParams& p = Api::params();
     const AnyJudge<Api> query(0.0f, shadow.distance, key);
-    return optix::trace_any_distance(
+    return optix::trace_any_distance<Api>(
         optix::has_far_rays(p.choices.hits), p.scene, shadow.ray, query, [&] {
           switch (p.choices.hits) {
             case OptixHits::custom:

@@ -48,8 +48,8 @@ void WavefrontCuda::make_optix() {
   optix_.reset();  // its memory is needed
   if (!plan_.traces_by_optix) return;
   optix_memory_ = std::make_unique<CudaOptixMemory>(stream());
-  optix_ = std::make_unique<OptixTracer>(*optix_memory_, scene_.triangles, plan_.optix_hits,
-                                         optix_queue_module());
+  optix_ =
+      std::make_unique<OptixTracer>(*optix_memory_, scene_, plan_.optix_hits, optix_queue_module());
 }
 
 void WavefrontCuda::trace_by_optix(StageId stage, const StageQueues& queues,

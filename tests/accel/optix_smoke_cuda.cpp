@@ -222,7 +222,7 @@ void try_case(const OptixContext& context, CudaOptixMemory& memory, cudaStream_t
         const auto begin = std::chrono::steady_clock::now();
         const OptixModule module{optix_ray_code(), sizeof(OptixRayParams)};
         pipeline =
-            std::make_unique<OptixPipeline>(context, memory, module, hits, tree.instance_count > 0);
+            std::make_unique<OptixPipeline>(context, memory, module, hits, structure->content());
         say(fmt::format("  {:.1f} ms", std::chrono::duration<double, std::milli>(
                                            std::chrono::steady_clock::now() - begin)
                                            .count()));

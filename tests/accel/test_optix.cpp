@@ -8,6 +8,7 @@
 #include "accel/instanced_meshes.h"
 #include "accel/tree_kinds.h"
 #include "accel/triangle_meshes.h"
+#include "common/accel/build/binary/build_bvh2.h"
 #include "common/accel/trace_optix/optix_rays.h"
 #include "common/accel/trace_optix/optix_tracer.h"
 #include "common/error/error.h"
@@ -26,7 +27,7 @@ void add_ray_generation(OptixPrograms& programs, const std::string& name) {
 }
 
 OptixPrograms ray_programs() {
-  OptixPrograms programs = hit_programs<EmulatedApi, ClosestTriangle, AnyTriangle>(
+  OptixPrograms programs = hit_programs<EmulatedApi, ClosestSurface, AnySurface>(
       []() -> const OptixScene& { return ray_params->scene; });
   add_ray_generation<OptixHits::custom>(programs, "custom");
   add_ray_generation<OptixHits::any_hit>(programs, "any_hit");
@@ -37,21 +38,38 @@ OptixPrograms ray_programs() {
 /// A tree, and OptiX beside it.
 struct World {
   TriangleTreeData data;
+  std::vector<Sphere> spheres;
+  std::vector<Bvh2Node> sphere_nodes;
+  Primitives primitives;
   HostOptixMemory memory;
   OptixContext context{std::make_shared<const OptixLibrary>()};
   OptixStructure structure;
   OptixPipeline pipeline;
 
-  World(TriangleTreeData tree, OptixHits hits)
+  World(TriangleTreeData tree, OptixHits hits, const std::vector<Sphere>& more = {})
       : data(std::move(tree)),
-        structure(context, memory, data.view(), hits),
-        pipeline(context, memory, {"code", sizeof(OptixRayParams)}, hits, !data.instances.empty()) {
+        primitives(primitives_of(more)),
+        structure(context, memory, data.view(), hits, primitives),
+        pipeline(context, memory, {"code", sizeof(OptixRayParams)}, hits, structure.content()) {}
+
+  /// In the order of our tree.
+  Primitives primitives_of(const std::vector<Sphere>& more) {
+    if (more.empty()) return {};
+    std::vector<Bounds> bounds;
+    for (const Sphere& sphere : more) bounds.push_back(sphere_bounds(sphere));
+    Bvh2 bvh = build_bvh2(bounds, static_cast<std::uint32_t>(more.size()), 1e-2f);
+    for (const std::uint32_t i : bvh.order) spheres.push_back(more[i]);
+    sphere_nodes = std::move(bvh.nodes);
+    Primitives view;
+    view.spheres = spheres.data(), view.sphere_count = static_cast<std::uint32_t>(spheres.size());
+    return view;
   }
 
   std::vector<HitRecord> trace(const RaySet& set) {
     std::vector<HitRecord> hits(set.rays.size(), HitRecord{-7, 7});
     OptixRayParams params;
     params.scene = optix_scene(data.view(), structure);
+    params.scene.primitives = primitives, params.scene.primitive_nodes = sphere_nodes.data();
     params.rays.rays = set.rays.data(), params.rays.hits = hits.data();
     params.rays.count = static_cast<std::uint32_t>(hits.size());
     const auto kind = set.type == RayType::any ? OptixPipeline::any : OptixPipeline::closest;
@@ -65,15 +83,56 @@ int count_differences(World& world, const RaySet& set) {
   int differ = 0;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const RayRecord& ray = set.rays[i];
+    Hit nearest;
+    nearest.t = ray.t_max;
+    for (std::uint32_t k = 0; k < world.spheres.size(); ++k)
+      keep_nearer(nearest, sphere_distance(world.spheres[k], ray.ray()), k);
     if (set.type == RayType::any) {
-      differ += (hits[i].t == 0) != any_hit(world.data, ray.ray(), ray.t_min, ray.t_max);
+      const bool met = !nearest.is_miss() || any_hit(world.data, ray.ray(), ray.t_min, ray.t_max);
+      differ += (hits[i].t == 0) != met;
       continue;
     }
-    const Hit hit = closest_hit(world.data, ray.ray(), ray.t_min, ray.t_max);
-    const std::uint32_t id = hit.is_miss() ? no_primitive : world.data.triangles[hit.primitive].id;
-    differ += hits[i].primitive != id || hits[i].t != (hit.is_miss() ? -1.0f : hit.t);
+    const Hit hit = closest_hit(world.data, ray.ray(), ray.t_min, nearest.t);
+    std::uint32_t id = nearest.primitive;
+    if (!hit.is_miss()) id = world.data.triangles[hit.primitive].id + world.primitives.sphere_count;
+    const float t = !hit.is_miss() ? hit.t : !nearest.is_miss() ? nearest.t : -1.0f;
+    differ += hits[i].primitive != id || hits[i].t != t;
   }
   return differ;
+}
+
+/// Of all sizes, some twice; one is a ground below the others.
+std::vector<Sphere> many_spheres() {
+  TestRandom random(3);
+  std::vector<Sphere> spheres{{{0, -200, 0}, 190.0f * 190.0f}};
+  for (int i = 0; i < 20; ++i) {
+    const float radius = 4.0f * std::pow(random.unit(), 4.0f) + 1e-3f;
+    spheres.push_back({point_in_cube(random, 20), radius * radius});
+    if (i % 5 == 0) spheres.push_back(spheres.back());
+  }
+  return spheres;
+}
+
+/// From near and far towards silhouettes: a few ulps of the ray's length beside them.
+RaySet grazing_rays(const std::vector<Sphere>& spheres, int count, RayType type) {
+  TestRandom random(7);
+  RaySet set;
+  set.type = type;
+  for (int i = 0; i < count; ++i) {
+    const Sphere& sphere = spheres[static_cast<std::size_t>(i) % spheres.size()];
+    const Vec3 origin = point_in_cube(random, i % 3 == 0 ? 900.0f : 60.0f);
+    const Vec3 to = sphere.center - origin;
+    const Vec3 side = glm::normalize(glm::cross(to, point_in_cube(random, 2)));
+    // The tangent meets the silhouette's circle at this sine of the angle at the origin.
+    const double distance = glm::length(glm::dvec3(to)), sine = sphere.radius() / distance;
+    if (!(sine < 0.99)) continue;
+    const double aimed = sine * (1 + (random.unit() - 0.5) * 4e-7 * (i % 2 == 0 ? 1 : 1e5));
+    const glm::dvec3 direction =
+        glm::normalize(glm::dvec3(to)) * std::sqrt(1 - aimed * aimed) + glm::dvec3(side) * aimed;
+    set.rays.push_back({origin, 0, Vec3(glm::normalize(direction)), infinite_distance});
+    if (i % 4 == 0) set.rays.back().t_max = static_cast<float>(distance);
+  }
+  return set;
 }
 
 class Optix : public testing::TestWithParam<OptixHits> {
@@ -116,6 +175,37 @@ TEST_P(Optix, GivesTheHitsOfInstances) {
   }
 }
 
+TEST_P(Optix, GivesTheHitsOfSpheres) {
+  const std::vector<Sphere> spheres = many_spheres();
+  const InstancedMeshes meshes = make_instanced_meshes(5);
+  for (const TriangleTreeData& tree :
+       {tree_kinds[2].build({}), tree_kinds[2].build({make_soup(60, 5)}),
+        tree_kinds[2].build(meshes.meshes, meshes.instances)}) {
+    World world(tree, GetParam(), spheres);
+    for (const RayType type : {RayType::closest, RayType::any})
+      expect_equal(world, grazing_rays(spheres, 3000, type));
+  }
+}
+
+// Boxes hold the points of grazing rays that our test meets beyond the sphere.
+TEST_P(Optix, SpheresAreOfferedWhereRoundingWidensThem) {
+  const std::vector<Sphere> spheres = many_spheres();
+  World world(tree_kinds[2].build({}), GetParam(), spheres);
+  int beyond = 0;
+  for (const RayRecord& ray : grazing_rays(spheres, 3000, RayType::closest).rays) {
+    for (const Sphere& sphere : spheres) {
+      const glm::dvec3 to = glm::dvec3(sphere.center) - glm::dvec3(ray.origin);
+      const glm::dvec3 d = glm::normalize(glm::dvec3(ray.direction));
+      const double distance = glm::length(to - glm::dot(to, d) * d);
+      const double over = distance - std::sqrt(double{sphere.radius_squared});
+      if (sphere_distance(sphere, ray.ray()) <= 0) continue;
+      beyond += over > 0;
+      EXPECT_LE(over, 23 * half_ulp * glm::length(to) + 14 * half_ulp * sphere.radius());
+    }
+  }
+  EXPECT_GT(beyond, 10);
+}
+
 TEST_P(Optix, FindsSomethingAndMisses) {
   const Mesh mesh = make_soup(200, 5);
   World world(tree_kinds[2].build({mesh}), GetParam());
@@ -136,10 +226,14 @@ TEST_P(Optix, OfNoTrianglesMeetsNothing) {
 TEST_P(Optix, FailsAtEachCallInOneLineAndLeavesNothing) {
   const InstancedMeshes meshes = make_instanced_meshes(2);
   const TriangleTreeData tree = brute_kind.build(meshes.meshes, meshes.instances);
+  const Sphere sphere{{1, 2, 3}, 4};
   fake_->run = nullptr;
   const auto use = [&](HostOptixMemory& memory) {
     const char params[16] = {};
-    OptixTracer tracer(memory, tree.view(), GetParam(),
+    Scene scene;
+    scene.triangles = tree.view();
+    scene.primitives.spheres = &sphere, scene.primitives.sphere_count = 1;
+    OptixTracer tracer(memory, scene, GetParam(),
                        {"code", 16, {"__raygen__paths"}, std::span(params).first(4)});
     tracer.launch(OptixPipeline::paths, params, 1);
     RenderReport report;
@@ -213,7 +307,7 @@ TEST(OptixStructure, RefusesMoreThanOptixTakes) {
     return problem_of([&] { OptixStructure(context, memory, tree.view(), OptixHits::custom); });
   };
   fake->primitives_max = 2;
-  EXPECT_NE(problem().find("triangles; OptiX takes at most 2"), std::string::npos);
+  EXPECT_NE(problem().find("triangles of a group; OptiX takes at most 2"), std::string::npos);
   fake->primitives_max = 1000000, fake->instances_max = 3;
   EXPECT_NE(problem().find("instances; OptiX takes at most 3"), std::string::npos);
 }
@@ -234,7 +328,7 @@ TEST(OptixPipeline, NeedsCode) {
   HostOptixMemory memory;
   const OptixContext context(std::make_shared<const OptixLibrary>());
   EXPECT_NE(problem_of([&] {
-              OptixPipeline(context, memory, {"", 16}, OptixHits::custom, false);
+              OptixPipeline(context, memory, {"", 16}, OptixHits::custom, {});
             }).find("built without programs"),
             std::string::npos);
 }
@@ -243,13 +337,15 @@ TEST(OptixPipeline, NamesWhatItsProgramsMeet) {
   UsedFakeOptix fake;
   HostOptixMemory memory;
   const OptixContext context(std::make_shared<const OptixLibrary>());
-  OptixPipeline(context, memory, {"some code", 16}, OptixHits::custom, false);
+  OptixPipeline(context, memory, {"some code", 16}, OptixHits::custom, {});
   EXPECT_EQ(fake->code, "some code");
   EXPECT_EQ(fake->pipeline.primitive_flags, optix::primitives_custom);
   EXPECT_EQ(fake->pipeline.graph_flags, optix::graph_single_gas);
-  OptixPipeline(context, memory, {"some code", 16}, OptixHits::built_in, true);
+  OptixPipeline(context, memory, {"some code", 16}, OptixHits::built_in, {true, false});
   EXPECT_EQ(fake->pipeline.primitive_flags, optix::primitives_triangle);
   EXPECT_EQ(fake->pipeline.graph_flags, optix::graph_single_level_instancing);
+  OptixPipeline(context, memory, {"some code", 16}, OptixHits::built_in, {true, true});
+  EXPECT_EQ(fake->pipeline.primitive_flags, optix::primitives_triangle | optix::primitives_custom);
 }
 
 TEST(OptixPipeline, RunsTheModulesOwnLaunchesAndKnowsItsConstants) {
@@ -260,13 +356,13 @@ TEST(OptixPipeline, RunsTheModulesOwnLaunchesAndKnowsItsConstants) {
   fake->run = [&](const FakeOptix::Launch& launch) { launched = launch.raygen; };
   const char params[] = {1, 2, 3, 4};
   OptixPipeline own(context, memory, {"code", 4, {"__raygen__a", "__raygen__b"}, {params, 3}},
-                    OptixHits::any_hit, false);
+                    OptixHits::any_hit, {});
   EXPECT_EQ(fake->constants, std::string({1, 2, 3}));
   own.launch(OptixPipeline::paths, params, 1);
   EXPECT_EQ(launched, "__raygen__a");
   own.launch(OptixPipeline::any, params, 1);
   EXPECT_EQ(launched, "__raygen__b");
-  OptixPipeline usual(context, memory, {"code", 4}, OptixHits::any_hit, false);
+  OptixPipeline usual(context, memory, {"code", 4}, OptixHits::any_hit, {});
   EXPECT_EQ(fake->constants, "");
   usual.launch(OptixPipeline::any, params, 1);
   EXPECT_EQ(launched, "__raygen__any_any_hit");

@@ -55,9 +55,9 @@ void expect_images(const std::string& name, const std::string& hits, const Rende
 
 class CudaOptixModes : public CudaOptix, public testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, CudaOptixModes,
-                         testing::Values("boxes", "statue:3K", "statue:100K", "terrain:3K",
-                                         "instances:20", "instances:3K", "cornell", "dial:16:0.5",
-                                         "dial:16:0.5:closed"),
+                         testing::Values("boxes", "spheres", "statue:3K", "statue:100K",
+                                         "terrain:3K", "instances:20", "instances:3K", "cornell",
+                                         "dial:16:0.5", "dial:16:0.5:closed"),
                          [](const auto& scene) {
                            std::string name = scene.param;
                            std::ranges::replace_if(
@@ -71,8 +71,7 @@ TEST_P(CudaOptixModes, GiveTheImagesOfOurTracer) {
                                                    {"height", "97"},
                                                    {"spp", "4"},
                                                    {"max-depth", "6"},
-                                                   {"kernel-set", "general"},
-                                                   {"accel", "cwbvh"}});
+                                                   {"kernel-set", "general"}});
   const Rendered expected = render_options(usual);
   expect_plausible(expected, usual);
   for (const char* hits : {"custom", "any-hit", "built-in"}) {
@@ -117,12 +116,8 @@ Rendered render_room(SceneData scene, const Settings& settings, const char* mode
 }
 
 TEST_F(CudaOptix, GivesTheRoomsOfOurTracer) {
-  SceneData mixed = mixed_scene();
-  mixed.spheres.clear(), mixed.sphere_material.clear();
-  SceneData lights = lit_room();
-  lights.spheres.clear(), lights.sphere_material.clear();
-  const std::pair<const char*, SceneData> rooms[] = {{"mixed", mixed},
-                                                     {"lights", lights},
+  const std::pair<const char*, SceneData> rooms[] = {{"mixed", mixed_scene()},
+                                                     {"lights", lit_room()},
                                                      {"masks", masked_room()},
                                                      {"limited", limited_room()},
                                                      {"forest", masked_forest()},
@@ -139,13 +134,9 @@ TEST_F(CudaOptix, GivesTheRoomsOfOurTracer) {
 }
 
 TEST_F(CudaOptix, GivesTheRoomsOfOurMegakernel) {
-  SceneData lights = lit_room();
-  lights.spheres.clear(), lights.sphere_material.clear();
-  const std::pair<const char*, SceneData> rooms[] = {{"lights", lights},
-                                                     {"materials", material_room(false)},
-                                                     {"masks", masked_room()},
-                                                     {"limited", limited_room()},
-                                                     {"forest", masked_forest()}};
+  const std::pair<const char*, SceneData> rooms[] = {
+      {"mixed", mixed_scene()}, {"lights", lit_room()},      {"materials", material_room(false)},
+      {"masks", masked_room()}, {"limited", limited_room()}, {"forest", masked_forest()}};
   for (const auto& [name, scene] : rooms) {
     const Rendered expected = render_room(scene, {}, "megakernel");
     for (const char* hits : judged) {
@@ -214,7 +205,7 @@ std::vector<HitRecord> trace_by_optix(const TriangleTreeData& data, const RaySet
       data.view([&](auto*& pointer, const auto& values, const char*) { pointer = upload(values); });
   const OptixStructure structure(context, memory, tree, hits);
   OptixPipeline pipeline(context, memory, {optix_ray_code(), sizeof(OptixRayParams)}, hits,
-                         tree.instance_count > 0);
+                         structure.content());
   OptixRayParams params;
   params.scene = optix_scene(tree, structure);
   params.rays.rays = upload(set.rays);

@@ -5,6 +5,7 @@
 #include "common/device/cpu/cpu_renderer.h"
 #include "megakernel/optix_paths.h"
 #include "mode_cases.h"
+#include "scene/lit_room.h"
 #include "scene/masked_room.h"
 #include "scene/material_room.h"
 #include "scene/mixed_scene.h"
@@ -32,7 +33,7 @@ class OptixPathsCpu : public CpuRenderer {
   OptixPathsCpu(const ExecutionPlan& plan, const SceneData& scene)
       : CpuRenderer(plan, scene),
         choices_{plan.optix_hits, plan.reorder},
-        tracer_(optix_memory_, scene_.triangles, plan.optix_hits, module()) {}
+        tracer_(optix_memory_, scene_, plan.optix_hits, module()) {}
 
  private:
   OptixModule module() const {
@@ -126,6 +127,12 @@ TEST_P(OptixPaths, OfTrianglesGiveTheSerialImage) {
 }
 TEST_P(OptixPaths, OfInstancesGiveTheSerialImage) { expect_equal(made("instances:4")); }
 
+TEST_P(OptixPaths, OfSpheresGiveTheSerialImage) { expect_equal(made("spheres")); }
+
+TEST_P(OptixPaths, OfAllShapesGiveTheSerialImage) {
+  for (const SceneData& scene : {mixed_scene(), lit_room()}) expect_equal(scene);
+}
+
 // Beyond OptixReach, a camera's rays pass through our own tree where our test decides.
 TEST_P(OptixPaths, FromFarAwayGiveTheSerialImage) {
   const Settings far{{"look-from", "400,300,500"}, {"look-at", "0,0,0"}, {"fov", "0.6"}};
@@ -144,7 +151,9 @@ TEST_P(OptixPaths, WithRouletteGiveTheSerialImage) {
 
 TEST_P(OptixPaths, WithMasksGiveTheSerialImage) {
   if (GetParam() == OptixHits::built_in) GTEST_SKIP() << "masks are judged by our programs alone";
-  for (const SceneData& scene : {masked_room(), limited_room(), masked_forest()})
+  SceneData spheres = limited_room();
+  add_spheres(spheres);
+  for (const SceneData& scene : {masked_room(), limited_room(), masked_forest(), spheres})
     expect_equal(scene);
 }
 

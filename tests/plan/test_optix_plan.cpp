@@ -112,13 +112,11 @@ TEST(OptixPlan, RefusesWhatItsMegakernelDoesNotKnow) {
     settings["mode"] = "megakernel";
     return optix_refusal(settings, refused);
   };
-  SceneProperties media = scene, spheres = scene;
+  SceneProperties media = scene;
   media.has_media = true;
   EXPECT_EQ(refusal({}, media),
             "--accel optix: its megakernel knows no media; scene 'room' has some, expected --mode "
             "wavefront");
-  spheres.spheres = 3;
-  EXPECT_NE(refusal({}, spheres).find("only triangles and quads"), std::string::npos);
   EXPECT_EQ(refusal({{"kernel", "vote"}}, scene),
             "--accel optix: its threads follow their paths; expected --kernel loop, not vote");
   EXPECT_EQ(refusal({{"block", "32x4"}}, scene),
@@ -135,13 +133,22 @@ TEST(OptixPlan, IsNeverChosenByItself) {
     EXPECT_FALSE(optix_plan({{"accel", "auto"}, {"mode", mode}}).traces_by_optix);
 }
 
-TEST(OptixPlan, TakesQuadsAsTrianglesAndInstances) {
+TEST(OptixPlan, TakesQuadsAsTrianglesSpheresAndInstances) {
   SceneProperties quads;
   quads.quads = 12, quads.is_primitive_only = true, quads.bsdf_kinds = 1;
   EXPECT_TRUE(optix_plan({}, quads).traces_by_optix);
   SceneProperties forest = triangle_scene();
   forest.instances = 20;
   EXPECT_TRUE(optix_plan({{"optix-hits", "built-in"}}, forest).traces_by_optix);
+  SceneProperties spheres;
+  spheres.spheres = 3, spheres.is_primitive_only = true, spheres.bsdf_kinds = 1;
+  SceneProperties all = forest, misty = spheres;
+  all.spheres = 3, all.has_masks = true, misty.has_media = true, misty.is_primitive_only = false;
+  for (const char* mode : {"wavefront", "megakernel"}) {
+    EXPECT_TRUE(optix_plan({{"mode", mode}}, spheres).traces_by_optix);
+    EXPECT_TRUE(optix_plan({{"mode", mode}}, all).traces_by_optix);
+  }
+  EXPECT_TRUE(optix_plan({}, misty).persistent_warps);
 }
 
 TEST(OptixPlan, RefusesWhatItCannotTrace) {
@@ -165,7 +172,7 @@ TEST(OptixPlan, RefusesWhatItCannotTrace) {
             "--accel optix: OptiX's kernels are not counted; expected no --counters");
   EXPECT_NE(optix_refusal({{"compaction", "cub"}}, scene).find("--compaction atomic"),
             std::string::npos);
-  SceneProperties masked = scene, open = scene, spheres = scene;
+  SceneProperties masked = scene, open = scene;
   masked.has_masks = true;
   EXPECT_EQ(optix_refusal({}, masked), "");
   EXPECT_EQ(optix_refusal({{"optix-hits", "built-in"}}, masked),
@@ -179,10 +186,6 @@ TEST(OptixPlan, RefusesWhatItCannotTrace) {
   EXPECT_EQ(optix_refusal({}, masked), "");
   open.has_media = open.has_open_boundaries = true;
   EXPECT_NE(optix_refusal({}, open).find("scene 'room' has no kernel for it"), std::string::npos);
-  spheres.spheres = 3;
-  EXPECT_EQ(optix_refusal({}, spheres),
-            "--accel optix: only triangles and quads are traced by OptiX; scene 'room' has 3 "
-            "spheres");
 }
 
 }  // namespace

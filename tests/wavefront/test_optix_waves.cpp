@@ -7,6 +7,7 @@
 #include "common/device/cpu/cpu_renderer.h"
 #include "medium/filled_glasses.h"
 #include "mode_cases.h"
+#include "scene/lit_room.h"
 #include "scene/masked_room.h"
 #include "scene/mixed_scene.h"
 #include "wavefront/loop.h"
@@ -46,8 +47,7 @@ class OptixWaves : public CpuRenderer {
   OptixWaves(const ExecutionPlan& plan, const SceneData& scene, std::uint32_t slots)
       : CpuRenderer(plan, scene),
         has_masks_(scene.properties.has_masks),
-        tracer_(optix_memory_, scene_.triangles, plan.optix_hits,
-                {"code", sizeof(OptixQueueParams)}) {
+        tracer_(optix_memory_, scene_, plan.optix_hits, {"code", sizeof(OptixQueueParams)}) {
     buffers_.policy = WavePolicy(plan, traits_, scene_, false);
     buffers_.pool.slot_count = buffers_.all_slots = slots;
     buffers_.counters = &counters_;
@@ -184,12 +184,24 @@ SceneData made(const std::string& scene) {
 TEST_P(OptixWavesOf, TrianglesGiveTheSerialImage) { expect_equal(made("statue:1K")); }
 TEST_P(OptixWavesOf, InstancesGiveTheSerialImage) { expect_equal(made("instances:4")); }
 
-TEST_P(OptixWavesOf, MediaGiveTheSerialImage) { expect_equal(filled_glasses(false)); }
+TEST_P(OptixWavesOf, SpheresGiveTheSerialImage) { expect_equal(made("spheres")); }
+
+TEST_P(OptixWavesOf, AllShapesGiveTheSerialImage) {
+  for (const SceneData& scene : {mixed_scene(), lit_room()}) expect_equal(scene);
+}
+
+TEST_P(OptixWavesOf, MediaGiveTheSerialImage) {
+  SceneData spheres = filled_glasses(false);
+  add_spheres(spheres);
+  for (const SceneData& scene : {filled_glasses(false), spheres}) expect_equal(scene);
+}
 
 TEST_P(OptixWavesOf, MasksGiveTheSerialImage) {
   if (GetParam() == OptixHits::built_in) GTEST_SKIP() << "masks are judged by our programs alone";
+  SceneData spheres = limited_room();
+  add_spheres(spheres);
   for (const SceneData& scene :
-       {masked_room(), limited_room(), masked_forest(), filled_glasses(true)})
+       {masked_room(), limited_room(), masked_forest(), spheres, filled_glasses(true)})
     expect_equal(scene);
 }
 

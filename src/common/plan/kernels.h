@@ -140,9 +140,9 @@ inline constexpr KernelRow table[] = {
     {cuda, {blocks, warps}, cwbvh, mixed, full, with_media, sampler, {spheres, instances, open_boundaries}},
     // Rays that OptiX traces.
     {cuda, {optix, queues}, cwbvh, triangles, full, plain, sampler},
-    {cuda, {optix, queues}, cwbvh, mixed, full, plain, sampler, spheres},
-    {cuda, {optix, queues}, cwbvh, mixed, full, with_masks, sampler, spheres},
-    {cuda, queues, cwbvh, mixed, full, with_media, sampler, {spheres, open_boundaries}},
+    {cuda, {optix, queues}, cwbvh, mixed, full, plain, sampler},
+    {cuda, {optix, queues}, cwbvh, mixed, full, with_masks, sampler},
+    {cuda, queues, cwbvh, mixed, full, with_media, sampler, open_boundaries},
     // With --path-bytes.
     {cuda, loop, bvh2, triangles, full, plain, sampler, {}, global, divergent, in_registers},
     {cuda, {vote, blocks, warps}, cwbvh, triangles, full, plain, sampler, {}, global, divergent, in_memory},

@@ -287,9 +287,6 @@ void check_optix(const Options& o, const SceneProperties& scene, const DevicePro
     throw Error(fmt::format("--accel optix: {}; {}", why, option));
   };
   if (!device.is_cuda) refuse("expected --device cuda", "OptiX runs on NVIDIA's GPUs");
-  if (scene.spheres > 0)
-    refuse(fmt::format("scene '{}' has {} spheres", scene.name, scene.spheres),
-           "only triangles and quads are traced by OptiX");
   if (scene.has_motion)
     refuse(fmt::format("scene '{}' moves", scene.name), "OptiX traces what stands still");
   if (o.optix_hits == OptixHits::built_in && scene.has_masks)

@@ -19,7 +19,7 @@ OptixModule optix_queue_module() {
 }
 
 void trace_by_optix(OptixTracer& tracer, OptixPipeline::Launch kind, OptixQueueParams params) {
-  params.scene = tracer.scene(params.world.triangles);
+  params.scene = tracer.scene(params.world);
   tracer.launch(kind, &params, std::min(params.pool.slot_count, optix_width_max));
 }
 

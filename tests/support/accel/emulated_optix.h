@@ -69,12 +69,12 @@ struct EmulatedApi {
     float t_min = 0, t_max = 0;
     unsigned flags = 0, record = 0;
     OptixPayload payload{};
-    std::uint32_t primitive = 0, instance = 0;
+    std::uint32_t primitive = 0, instance = 0, offset = 0;  ///< offset: of the instance's records
     bool ended = false, accepted = false;
     bool has_hit_object = false;            ///< a traversal's
     std::map<std::uint32_t, int> reorders;  ///< of the launch: how often, by key
     int traversals = 0;                     ///< likewise
-    std::uint32_t hit_primitive = 0, hit_instance = 0;
+    std::uint32_t hit_primitive = 0, hit_instance = 0, hit_offset = 0;
   };
   static State& state() {
     static thread_local State one;
@@ -89,7 +89,10 @@ struct EmulatedApi {
   static std::uint32_t payload_word(int i) { return state().payload.word[i]; }
   static void set_payload_word(int i, std::uint32_t word) { state().payload.word[i] = word; }
   static void report_intersection(float t) {
-    if (t >= state().t_min && t <= state().t_max) accept(t);
+    State& s = state();
+    if (!(t >= s.t_min && t <= s.t_max)) return;
+    if ((s.flags & optix::ray_disable_anyhit) != 0) return accept(t);
+    run_any(t);
   }
   static void ignore_intersection() { throw Ignored(); }
   static void terminate_ray() { throw Terminated(); }
@@ -104,7 +107,7 @@ struct EmulatedApi {
                        unsigned flags, unsigned record, OptixPayload& payload) {
     State& s = state();
     s.ray = ray, s.t_min = t_min, s.t_max = t_max, s.flags = flags, s.record = record;
-    s.payload = payload, s.ended = s.accepted = false;
+    s.payload = payload, s.ended = s.accepted = false, s.offset = 0;
     ++s.traversals;
     if (handle != 0) traverse(handle);
     payload = s.payload;
@@ -121,7 +124,7 @@ struct EmulatedApi {
     State& s = state();
     s.payload = payload;
     if (s.accepted && (s.flags & optix::ray_disable_closesthit) == 0) {
-      s.primitive = s.hit_primitive, s.instance = s.hit_instance;
+      s.primitive = s.hit_primitive, s.instance = s.hit_instance, s.offset = s.hit_offset;
       run(group().hit.closest);
     }
     payload = s.payload;
@@ -130,7 +133,7 @@ struct EmulatedApi {
 
  private:
   static const optix::ProgramGroupDescription& group() {
-    return state().launch->hit.at(state().record);
+    return state().launch->hit.at(state().record + state().offset);
   }
   static void run(const optix::Program& program) {
     if (program.entry != nullptr) state().programs->at(program.entry)();
@@ -139,7 +142,7 @@ struct EmulatedApi {
   static void accept(float t) {
     State& s = state();
     s.t_max = t, s.accepted = true;
-    s.hit_primitive = s.primitive, s.hit_instance = s.instance;
+    s.hit_primitive = s.primitive, s.hit_instance = s.instance, s.hit_offset = s.offset;
     if ((s.flags & optix::ray_terminate_on_first_hit) != 0) s.ended = true;
   }
 
@@ -151,7 +154,7 @@ struct EmulatedApi {
       Affine to_world;
       std::memcpy(to_world.row, instance.to_world, sizeof instance.to_world);
       const Affine to_object = inverse(to_world);
-      s.instance = instance.id;
+      s.instance = instance.id, s.offset = instance.record_offset;
       traverse_group(s.library->structures.at(instance.group),
                      {to_object.point(s.ray.origin), to_object.vector(s.ray.direction)});
       if (s.ended) return;
@@ -212,14 +215,18 @@ struct EmulatedApi {
     double near, far;
     const Triangle triangle{v[0], 0, v[1], 0, v[2], 0};
     if (!enters(optix_box(triangle, {1e-4f}), ray, near, far)) return;
-    t = std::clamp(t, static_cast<float>(near), static_cast<float>(far));
+    run_any(std::clamp(t, static_cast<float>(near), static_cast<float>(far)));
+  }
+
+  /// What meets a candidate at `t`; without a program it is accepted.
+  static void run_any(float t) {
     try {
       run(group().hit.any);
       accept(t);
     } catch (Ignored) {
     } catch (Terminated) {
       accept(t);
-      s.ended = true;
+      state().ended = true;
     }
   }
 };
@@ -235,6 +242,13 @@ OptixPrograms hit_programs(Scene scene) {
   programs["__anyhit__ties"] = [=] { judge_all<Api, Closest>(scene()); };
   programs["__anyhit__any"] = [=] { accept_any<Api, Any>(scene()); };
   programs["__closesthit__name"] = [=] { name_hit<Api>(scene()); };
+  programs["__intersection__closest_sphere"] = [=] {
+    intersect_closest_box<Api, Closest, true>(scene());
+  };
+  programs["__intersection__any_sphere"] = [=] { intersect_any_box<Api, Any, true>(scene()); };
+  programs["__intersection__sphere"] = [=] { report_sphere<Api>(scene()); };
+  programs["__anyhit__end"] = [] { Api::terminate_ray(); };
+  programs["__closesthit__name_sphere"] = [] { name_sphere<Api>(); };
   return programs;
 }
 

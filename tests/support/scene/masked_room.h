@@ -57,6 +57,16 @@ inline SceneData limited_room() {
   return scene;
 }
 
+/// Spheres among a room's surfaces, one of which glows.
+inline void add_spheres(SceneData& scene) {
+  const std::uint32_t grey = add_diffuse(scene, Color(0.5f));
+  const std::uint32_t glow = scene.add_material(make_diffuse(Color(0.0f), {2, 4, 6}));
+  for (int i = 0; i < 6; ++i) {
+    const auto x = static_cast<float>(i) - 2.5f;
+    scene.add_sphere({0.6f * x, 0.3f * x, 0.4f * x * x}, 0.35f, i % 3 == 0 ? glow : grey);
+  }
+}
+
 /// The masked room's leaves in three groups, each of which two instances repeat.
 inline SceneData masked_forest() {
   SceneData scene = masked_room();

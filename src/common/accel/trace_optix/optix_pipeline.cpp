@@ -6,7 +6,6 @@
 #include <array>
 #include <vector>
 
-#include "common/accel/trace_optix/optix_scene.h"
 #include "common/error/error.h"
 
 namespace pt {
@@ -23,6 +22,36 @@ void call_with_log(const OptixLibrary& library, const char* name, Function&& fun
 }
 
 constexpr std::size_t record_bytes = optix::record_header_bytes;
+
+/// Programs of the records of triangles, or of spheres, which are boxes in any case.
+void name_programs(std::span<optix::ProgramGroupDescription> records, OptixHits hits,
+                   optix::Module module, bool are_spheres) {
+  optix::HitPrograms* hit[optix_records];
+  for (unsigned i = 0; i < optix_records; ++i) hit[i] = &records[i].hit;
+  const auto set = [&](OptixRecord record, optix::Program optix::HitPrograms::*kind,
+                       const char* name) {
+    hit[record]->*kind = {module, name};
+  };
+  using P = optix::HitPrograms;
+  if (hits == OptixHits::built_in) {
+    for (const OptixRecord record : {optix_record_closest, optix_record_any, optix_record_ties}) {
+      set(record, &P::closest, are_spheres ? "__closesthit__name_sphere" : "__closesthit__name");
+      if (are_spheres) set(record, &P::intersection, "__intersection__sphere");
+    }
+  } else if (are_spheres || hits == OptixHits::custom) {
+    const char* const closest =
+        are_spheres ? "__intersection__closest_sphere" : "__intersection__closest";
+    set(optix_record_closest, &P::intersection, closest);
+    set(optix_record_ties, &P::intersection, closest);
+    set(optix_record_any, &P::intersection,
+        are_spheres ? "__intersection__any_sphere" : "__intersection__any");
+    if (hits == OptixHits::any_hit) set(optix_record_any, &P::any, "__anyhit__end");
+  } else {
+    set(optix_record_closest, &P::any, "__anyhit__closest");
+    set(optix_record_any, &P::any, "__anyhit__any");
+    set(optix_record_ties, &P::any, "__anyhit__ties");
+  }
+}
 
 }  // namespace
 
@@ -44,22 +73,26 @@ std::string unpack_optix_code(std::span<const unsigned char> packed) {
 }
 
 OptixPipeline::OptixPipeline(const OptixContext& context, OptixMemory& memory,
-                             const OptixModule& module, OptixHits hits, bool has_instances)
-    : context_(context), memory_(memory), params_bytes_(module.params_bytes) {
+                             const OptixModule& module, OptixHits hits, const OptixContent& content)
+    : context_(context),
+      memory_(memory),
+      params_bytes_(module.params_bytes),
+      hit_count_(content.has_spheres ? 2 * optix_records : optix_records) {
   if (module.code.empty())
     throw Error("OptiX: ptexp was built without programs for it (PTEXP_OPTIX and PTEXP_CUDA)");
   options_.graph_flags =
-      has_instances ? optix::graph_single_level_instancing : optix::graph_single_gas;
+      content.has_instances ? optix::graph_single_level_instancing : optix::graph_single_gas;
   options_.payload_values = optix_payload_words;
   options_.attribute_values = 2;  // the least
   options_.exception_flags = optix::exception_none;
   options_.params_name = "params";
   options_.primitive_flags =
       hits == OptixHits::custom ? optix::primitives_custom : optix::primitives_triangle;
+  if (content.has_spheres) options_.primitive_flags |= optix::primitives_custom;
   try {
     create_module(module);
     create_groups(module.launches, hits);
-    link(has_instances);
+    link(content.has_instances);
     fill_records();
     params_ = OptixBuffer(memory, params_bytes_, "OptiX's parameters");
   } catch (...) {
@@ -98,7 +131,7 @@ void OptixPipeline::create_groups(std::vector<std::string> launches, OptixHits h
   if (launches.empty())
     launches = {std::string("__raygen__closest_") + suffix, std::string("__raygen__any_") + suffix};
   launch_count_ = launches.size();
-  std::vector<optix::ProgramGroupDescription> all(launch_count_ + 1 + hit_kinds);
+  std::vector<optix::ProgramGroupDescription> all(launch_count_ + 1 + hit_count_);
   for (optix::ProgramGroupDescription& group : all) group.kind = optix::group_kind_hitgroup;
   for (std::size_t i = 0; i < launch_count_; ++i) {
     all[i].kind = optix::group_kind_raygen;
@@ -106,22 +139,9 @@ void OptixPipeline::create_groups(std::vector<std::string> launches, OptixHits h
   }
   // No program for rays that miss: their payload says so.
   all[launch_count_].kind = optix::group_kind_miss;
-  optix::HitPrograms* hit[hit_kinds];
-  for (std::size_t i = 0; i < hit_kinds; ++i) hit[i] = &all[launch_count_ + 1 + i].hit;
-  switch (hits) {
-    case OptixHits::custom:
-      hit[0]->intersection = hit[2]->intersection = {module_, "__intersection__closest"};
-      hit[1]->intersection = {module_, "__intersection__any"};
-      break;
-    case OptixHits::any_hit:
-      hit[0]->any = {module_, "__anyhit__closest"};
-      hit[1]->any = {module_, "__anyhit__any"};
-      hit[2]->any = {module_, "__anyhit__ties"};
-      break;
-    case OptixHits::built_in:
-      for (optix::HitPrograms* group : hit) group->closest = {module_, "__closesthit__name"};
-      break;
-  }
+  const std::span<optix::ProgramGroupDescription> records = std::span(all).last(hit_count_);
+  for (std::size_t first = 0; first < hit_count_; first += optix_records)
+    name_programs(records.subspan(first, optix_records), hits, module_, first > 0);
   const optix::ProgramGroupOptions options{};
   groups_.resize(all.size());
   call_with_log(context_.library(), "optixProgramGroupCreate", [&](char* log, std::size_t* bytes) {
@@ -181,7 +201,7 @@ void OptixPipeline::launch(Launch kind, const void* params, std::uint32_t width)
   table.miss = record(launch_count_);
   table.miss_stride = record_bytes, table.miss_count = 1;
   table.hit = record(launch_count_ + 1);
-  table.hit_stride = record_bytes, table.hit_count = hit_kinds;
+  table.hit_stride = record_bytes, table.hit_count = static_cast<unsigned>(hit_count_);
   context_.library().check(
       context_.functions().launch(pipeline_, memory_.stream(), params_.address(), params_bytes_,
                                   &table, width, 1, 1),

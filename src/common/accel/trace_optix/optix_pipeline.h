@@ -9,6 +9,7 @@
 
 #include "common/accel/trace_optix/optix_library.h"
 #include "common/accel/trace_optix/optix_memory.h"
+#include "common/accel/trace_optix/optix_scene.h"
 #include "common/choices/optix_hits.h"
 
 namespace pt {
@@ -33,7 +34,7 @@ std::string unpack_optix_code(std::span<const unsigned char> packed);
 class OptixPipeline {
  public:
   OptixPipeline(const OptixContext& context, OptixMemory& memory, const OptixModule& module,
-                OptixHits hits, bool has_instances);
+                OptixHits hits, const OptixContent& content);
   ~OptixPipeline();
   OptixPipeline(const OptixPipeline&) = delete;
   OptixPipeline& operator=(const OptixPipeline&) = delete;
@@ -45,8 +46,6 @@ class OptixPipeline {
   void launch(Launch kind, const void* params, std::uint32_t width);
 
  private:
-  static constexpr std::size_t hit_kinds = 3;
-
   void create_module(const OptixModule& module);
   void create_groups(std::vector<std::string> launches, OptixHits hits);
   void link(bool has_instances);
@@ -58,8 +57,9 @@ class OptixPipeline {
   std::size_t params_bytes_;
   optix::PipelineOptions options_{};
   optix::Module module_ = nullptr;
-  std::size_t launch_count_ = 0;
-  std::vector<optix::ProgramGroup> groups_;  ///< ray generation, miss, hits
+  std::size_t launch_count_ = 0, hit_count_;
+  std::vector<optix::ProgramGroup>
+      groups_;  ///< ray generation, miss, hits of triangles, of spheres
   optix::Pipeline pipeline_ = nullptr;
   OptixBuffer records_, params_;
 };

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "common/accel/trace_optix/optix_scene.h"
+#include "common/accel/traverse_bvh2.h"
 #include "common/accel/traverse_cwbvh.h"
 #include "common/choices/optix_hits.h"
 
@@ -33,14 +34,19 @@ class JudgingQuery : public Query {
     const std::uint32_t index = tree.instance_count > 0 ? tree.instances[instance].index : 0;
     return judged_mask_hides(Api::masks(), key_, triangle, hit.b1, hit.b2, index);
   }
+  PT_OPTIX_FUNCTION bool hides_sphere(std::uint32_t sphere) const {
+    const auto& world = Api::world();
+    return is_limited_camera_ray(world, key_) &&
+           world.opacities[world.material_of[sphere]].hides_from_camera();
+  }
 
  private:
   std::uint32_t key_;
 };
 template <class Api>
-using ClosestJudge = JudgingQuery<Api, ClosestTriangle>;
+using ClosestJudge = JudgingQuery<Api, ClosestSurface>;
 template <class Api>
-using AnyJudge = JudgingQuery<Api, AnyTriangle>;
+using AnyJudge = JudgingQuery<Api, AnySurface>;
 
 }  // namespace pt
 
@@ -79,27 +85,54 @@ PT_OPTIX_FUNCTION bool offer_named(const TriangleTree& tree, Query& query) {
                          query);
 }
 
+/// Offers the sphere, which OptiX numbers as we do.
+template <class Api, class Query>
+PT_OPTIX_FUNCTION bool offer_sphere(const OptixScene& scene, const Ray& ray, std::uint32_t sphere,
+                                    Query& query) {
+  if constexpr (Query::has_masks) {
+    if (query.hides_sphere(sphere)) return false;
+  }
+  return query.offer_sphere(sphere_distance(load_wide(&scene.primitives.spheres[sphere]), ray),
+                            sphere);
+}
+
+/// Offers what OptiX names, in a program for spheres or for triangles.
+template <class Api, bool is_sphere, class Query>
+PT_OPTIX_FUNCTION bool offer_box(const OptixScene& scene, Query& query) {
+  if constexpr (is_sphere)
+    return offer_sphere<Api>(scene, load_ray<Api>(), Api::primitive_index(), query);
+  return offer_named<Api>(scene.tree, query);
+}
+
 /// Reports where OptiX may stop to look, not where the hit is: others at the same distance must
 /// still be offered.
-template <class Api, class Query>
+template <class Api, class Query, bool is_sphere = false>
 PT_OPTIX_FUNCTION void intersect_closest_box(const OptixScene& scene) {
   Query query(0.0f, 0.0f);
   load_query<Api>(query);
   const float before = query.t_max();
-  offer_named<Api>(scene.tree, query);
+  offer_box<Api, is_sphere>(scene, query);
   if (!(query.t_max() < before)) return store_query<Api>(query);
   store_query<Api>(query);
   Api::report_intersection(optix_t_max(query.t_max(), optix_cull_margin(scene, load_ray<Api>())));
 }
 
-/// With ray_terminate_on_first_hit.
-template <class Api, class Query>
+/// With ray_terminate_on_first_hit, or a program that does so.
+template <class Api, class Query, bool is_sphere = false>
 PT_OPTIX_FUNCTION void intersect_any_box(const OptixScene& scene) {
   Query query(0.0f, 0.0f);
   load_query<Api>(query);
-  if (!offer_named<Api>(scene.tree, query)) return;
+  if (!offer_box<Api, is_sphere>(scene, query)) return;
   store_query<Api>(query);
   Api::report_intersection(Api::ray_t_max());
+}
+
+/// Where OptiX decides: it takes the distance for its own.
+template <class Api>
+PT_OPTIX_FUNCTION void report_sphere(const OptixScene& scene) {
+  const float t = sphere_distance(load_wide(&scene.primitives.spheres[Api::primitive_index()]),
+                                  load_ray<Api>());
+  if (t > 0.0f) Api::report_intersection(t);
 }
 
 /// First of two traces: a triangle is accepted, which ends OptiX's interval where it is, if it is
@@ -141,13 +174,32 @@ PT_OPTIX_FUNCTION void name_hit(const OptixScene& scene) {
       scene.tree.instance_count == 0 ? 0 : scene.tree.instances[instance].first_slot;
   store_query<Api>(Hit{Api::ray_t_max(), first + Api::primitive_index(), instance});
 }
+template <class Api>
+PT_OPTIX_FUNCTION void name_sphere() {
+  store_query<Api>(Hit{Api::ray_t_max(), Api::primitive_index(), sphere_instance});
+}
 
-/// Through our own tree.
-template <class Query>
-PT_OPTIX_FUNCTION Query trace_far(const TriangleTree& tree, const Ray& ray, Query query) {
-  traverse_cwbvh<true>(tree, ray, query);
+/// Through our own trees.
+template <class Api, class Query>
+PT_OPTIX_FUNCTION Query trace_far(const OptixScene& scene, const Ray& ray, Query query) {
+  if (scene.primitives.count() > 0) {
+    const auto visit = [&](float, std::uint32_t sphere, float& t_max) {
+      const bool ends = offer_sphere<Api>(scene, ray, sphere, query);
+      t_max = query.t_max();
+      return ends;
+    };
+    if (traverse_bvh2(scene.primitive_nodes, scene.primitives, ray, query.t_max(), visit))
+      return query;
+  }
+  traverse_cwbvh<true>(scene.tree, ray, query);
   return query;
 }
+
+/// What was found, as the scene numbers it.
+PT_OPTIX_FUNCTION Hit answer(const OptixScene& scene, const Hit& hit) {
+  return numbered(scene, hit);
+}
+PT_OPTIX_FUNCTION bool answer(const OptixScene&, bool met) { return met; }
 
 /// Whether rays from far away pass through our own tree, not through OptiX's structure.
 constexpr bool has_far_rays(OptixHits hits) { return hits != OptixHits::built_in; }
@@ -160,12 +212,12 @@ PT_OPTIX_FUNCTION Hit trace_near_closest(const OptixScene& scene, const Ray& ray
   const float t_min = optix_t_min(query.t_min(), margin);
   const float t_max = optix_t_max(query.t_max(), margin);
   if constexpr (hits == OptixHits::built_in) {
-    OptixPayload payload = to_payload(Hit());
+    OptixPayload payload = to_payload(Hit(), ray);
     Api::trace(scene.handle, ray, query.t_min(), query.t_max(), ray_disable_anyhit,
                optix_record_closest, payload);
     Hit hit;
     from_payload(payload, hit);
-    if (hit.is_miss()) return hit;
+    if (hit.is_miss() || hit.instance == sphere_instance) return hit;
     const std::uint32_t first =
         scene.tree.instance_count == 0 ? 0 : scene.tree.instances[hit.instance].first_slot;
     offer_candidate(scene.tree, ray, hit.primitive - first, hit.instance, query);
@@ -192,7 +244,7 @@ template <class Api, OptixHits hits, class Query>
 PT_OPTIX_FUNCTION bool trace_near_any(const OptixScene& scene, const Ray& ray, Query query) {
   const float margin = optix_cull_margin(scene, ray);
   if constexpr (hits == OptixHits::built_in) {
-    OptixPayload payload = to_payload(Hit());
+    OptixPayload payload = to_payload(Hit(), ray);
     Api::trace(scene.handle, ray, query.t_min(), query.t_max(),
                ray_disable_anyhit | ray_terminate_on_first_hit, optix_record_any, payload);
     Hit hit;
@@ -211,41 +263,51 @@ PT_OPTIX_FUNCTION bool trace_near_any(const OptixScene& scene, const Ray& ray, Q
   }
 }
 
-/// What `near` gives, or what our own tree does for a ray from far away.
-template <class Query, class Near>
+/// What `near` gives, or what our own trees do for a ray from far away.
+template <class Api, class Query, class Near>
 PT_OPTIX_FUNCTION auto trace_any_distance(bool has_far_rays, const OptixScene& scene,
                                           const Ray& ray, Query query, Near&& near)
     -> decltype(near()) {
   if (!is_traceable(ray)) return {};
-  if (has_far_rays && begins_too_far(scene, ray)) return trace_far(scene.tree, ray, query).result();
-  return near();
+  if (has_far_rays && begins_too_far(scene, ray))
+    return answer(scene, trace_far<Api>(scene, ray, query).result());
+  return answer(scene, near());
 }
 
 template <class Api, OptixHits hits, class Query>
 PT_OPTIX_FUNCTION Hit trace_closest(const OptixScene& scene, const Ray& ray, Query query) {
-  return trace_any_distance(has_far_rays(hits), scene, ray, query,
-                            [&] { return trace_near_closest<Api, hits>(scene, ray, query); });
+  return trace_any_distance<Api>(has_far_rays(hits), scene, ray, query,
+                                 [&] { return trace_near_closest<Api, hits>(scene, ray, query); });
 }
 
 template <class Api, OptixHits hits, class Query>
 PT_OPTIX_FUNCTION bool trace_any(const OptixScene& scene, const Ray& ray, Query query) {
-  return trace_any_distance(has_far_rays(hits), scene, ray, query,
-                            [&] { return trace_near_any<Api, hits>(scene, ray, query); });
+  return trace_any_distance<Api>(has_far_rays(hits), scene, ray, query,
+                                 [&] { return trace_near_any<Api, hits>(scene, ray, query); });
 }
 
 }  // namespace pt::optix
 
 /// The programs that judge, for a module whose OptixScene is `scene`, in constant memory.
-#define PT_OPTIX_HIT_PROGRAMS(Api, Closest, Any, scene)                                      \
-  extern "C" __global__ void __intersection__closest() {                                     \
-    pt::optix::intersect_closest_box<Api, Closest>(scene);                                   \
-  }                                                                                          \
-  extern "C" __global__ void __intersection__any() {                                         \
-    pt::optix::intersect_any_box<Api, Any>(scene);                                           \
-  }                                                                                          \
-  extern "C" __global__ void __anyhit__closest() {                                           \
-    pt::optix::accept_closest<Api, Closest>(scene);                                          \
-  }                                                                                          \
-  extern "C" __global__ void __anyhit__ties() { pt::optix::judge_all<Api, Closest>(scene); } \
-  extern "C" __global__ void __anyhit__any() { pt::optix::accept_any<Api, Any>(scene); }     \
-  extern "C" __global__ void __closesthit__name() { pt::optix::name_hit<Api>(scene); }
+#define PT_OPTIX_HIT_PROGRAMS(Api, Closest, Any, scene)                                         \
+  extern "C" __global__ void __intersection__closest() {                                        \
+    pt::optix::intersect_closest_box<Api, Closest>(scene);                                      \
+  }                                                                                             \
+  extern "C" __global__ void __intersection__any() {                                            \
+    pt::optix::intersect_any_box<Api, Any>(scene);                                              \
+  }                                                                                             \
+  extern "C" __global__ void __anyhit__closest() {                                              \
+    pt::optix::accept_closest<Api, Closest>(scene);                                             \
+  }                                                                                             \
+  extern "C" __global__ void __anyhit__ties() { pt::optix::judge_all<Api, Closest>(scene); }    \
+  extern "C" __global__ void __anyhit__any() { pt::optix::accept_any<Api, Any>(scene); }        \
+  extern "C" __global__ void __closesthit__name() { pt::optix::name_hit<Api>(scene); }          \
+  extern "C" __global__ void __intersection__closest_sphere() {                                 \
+    pt::optix::intersect_closest_box<Api, Closest, true>(scene);                                \
+  }                                                                                             \
+  extern "C" __global__ void __intersection__any_sphere() {                                     \
+    pt::optix::intersect_any_box<Api, Any, true>(scene);                                        \
+  }                                                                                             \
+  extern "C" __global__ void __intersection__sphere() { pt::optix::report_sphere<Api>(scene); } \
+  extern "C" __global__ void __anyhit__end() { Api::terminate_ray(); }                          \
+  extern "C" __global__ void __closesthit__name_sphere() { pt::optix::name_sphere<Api>(); }

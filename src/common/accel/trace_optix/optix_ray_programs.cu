@@ -7,7 +7,7 @@ extern "C" {
 __constant__ pt::OptixRayParams params;
 }
 
-PT_OPTIX_HIT_PROGRAMS(pt::optix::DeviceApi, pt::ClosestTriangle, pt::AnyTriangle, params.scene)
+PT_OPTIX_HIT_PROGRAMS(pt::optix::DeviceApi, pt::ClosestSurface, pt::AnySurface, params.scene)
 
 #define PT_RAY_GENERATION(name)                                                \
   extern "C" __global__ void __raygen__closest_##name() {                      \

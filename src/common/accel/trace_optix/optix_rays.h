@@ -23,9 +23,13 @@ PT_OPTIX_FUNCTION void trace_closest_rays(const OptixRayParams& p) {
   for (std::uint32_t i = Api::launch_index(); i < p.rays.count; i += Api::launch_width()) {
     const RayRecord ray = load_wide(&p.rays.rays[i]);
     const Hit hit =
-        optix::trace_closest<Api, hits>(p.scene, ray.ray(), ClosestTriangle(ray.t_min, ray.t_max));
-    p.rays.hits[i] = hit.is_miss() ? HitRecord{-1.0f, no_primitive}
-                                   : HitRecord{hit.t, p.scene.tree.triangles[hit.primitive].id};
+        optix::trace_closest<Api, hits>(p.scene, ray.ray(), ClosestSurface(ray.t_min, ray.t_max));
+    const std::uint32_t spheres = p.scene.primitives.count();
+    HitRecord record{-1.0f, no_primitive};
+    if (!hit.is_miss()) record = {hit.t, hit.primitive};
+    if (!hit.is_miss() && hit.primitive >= spheres)
+      record.primitive = spheres + p.scene.tree.triangles[hit.primitive - spheres].id;
+    p.rays.hits[i] = record;
   }
 }
 
@@ -34,7 +38,7 @@ PT_OPTIX_FUNCTION void trace_any_rays(const OptixRayParams& p) {
   for (std::uint32_t i = Api::launch_index(); i < p.rays.count; i += Api::launch_width()) {
     const RayRecord ray = load_wide(&p.rays.rays[i]);
     const bool met =
-        optix::trace_any<Api, hits>(p.scene, ray.ray(), AnyTriangle(ray.t_min, ray.t_max));
+        optix::trace_any<Api, hits>(p.scene, ray.ray(), AnySurface(ray.t_min, ray.t_max));
     p.rays.hits[i] = {met ? 0.0f : -1.0f, no_primitive};
   }
 }

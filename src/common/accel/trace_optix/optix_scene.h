@@ -7,6 +7,7 @@
 
 #include "common/accel/trace_optix/optix_abi.h"
 #include "common/accel/triangle_query.h"
+#include "common/geometry/primitives.h"
 
 namespace pt {
 
@@ -16,7 +17,53 @@ struct OptixScene {
   float cull_margin = 0;  ///< OptixReach
   Vec3 centre{0.0f};
   float reach = 0;
+  Primitives primitives;                      ///< spheres alone
+  const Bvh2Node* primitive_nodes = nullptr;  ///< our tree over them
 };
+
+/// What a scene's structure has besides triangles in world space.
+struct OptixContent {
+  bool has_instances = false;  ///< OptiX's
+  bool has_spheres = false;    ///< boxes of an instance of their own, whose records are others
+};
+
+/// Hit::instance where a query has met a sphere, whose number is Hit::primitive.
+inline constexpr std::uint32_t sphere_instance = 0xffffffffu;
+
+/// Of triangles and spheres: where both are met at the same t the sphere wins, then the lower
+/// number, as in transport/intersect.h.
+class ClosestSurface : public ClosestTriangle {
+ public:
+  using ClosestTriangle::ClosestTriangle;
+
+  PT_HD bool offer(const TriangleTree& tree, float t, std::uint32_t slot, std::uint32_t instance) {
+    if (result().instance == sphere_instance && !(t < t_max())) return false;
+    return ClosestTriangle::offer(tree, t, slot, instance);
+  }
+  PT_HD bool offer_sphere(float t, std::uint32_t sphere) {
+    const Hit best = result();
+    const bool wins_tie = best.instance != sphere_instance || sphere < best.primitive;
+    if (!(t > t_min() && (t < t_max() || (t == t_max() && wins_tie)))) return false;
+    ClosestTriangle met(t_min(), HUGE_VALF);
+    met.offer({}, t, sphere, sphere_instance);
+    ClosestTriangle::operator=(met);
+    return false;
+  }
+};
+
+class AnySurface : public AnyTriangle {
+ public:
+  using AnyTriangle::AnyTriangle;
+
+  PT_HD bool offer_sphere(float t, std::uint32_t) { return offer({}, t, 0, 0); }
+};
+
+/// A query's hit as the scene numbers it.
+PT_HD Hit numbered(const OptixScene& scene, const Hit& hit) {
+  if (hit.is_miss()) return hit;
+  if (hit.instance == sphere_instance) return {hit.t, hit.primitive, 0};
+  return {hit.t, hit.primitive + scene.primitives.count(), hit.instance};
+}
 
 /// Whether the ray begins so far outside that rounding moves its hits by more than the margins of
 /// boxes. Such rays, of distant cameras, are traced through our own tree.
@@ -68,8 +115,9 @@ PT_HD bool offer_candidate(const TriangleTree& tree, const Ray& ray, std::uint32
 /// word: OptiX need not give back the same bits.
 inline constexpr int optix_query_words = 5, optix_payload_words = optix_query_words + 6;
 
-/// Records of the hit programs, counted from the first (OptixPipeline).
+/// Records of the hit programs, counted from the first of triangles or of spheres (OptixPipeline).
 enum OptixRecord : unsigned { optix_record_closest, optix_record_any, optix_record_ties };
+inline constexpr unsigned optix_records = 3;
 
 struct OptixPayload {
   std::uint32_t word[optix_payload_words];

@@ -19,6 +19,9 @@ constexpr float near_reach = 8.0f, near_error = 1.75f * (near_reach + 0.5f) * hi
 // ray's two ends, and what our transform, OptiX's and its inverse lose.
 constexpr float instance_reach = 1.5f,
                 instance_error = 1.75f * 2 * hit_error_distance + 64.0f * half_ulp;
+// The same of spheres (docs/design/optix.md), of the largest coordinate: for a distance of up to
+// 1.75 * 2 times that, a radius of a third and what OptiX's transform and the box's planes lose.
+constexpr float sphere_error = (1.75f * 2 * 23 + 20.0f / 3 + 64) * half_ulp;
 
 float size_of(const Bounds& bounds) { return max_abs(bounds.max - bounds.min); }
 
@@ -41,21 +44,21 @@ float norm_of(const Affine& transform) {
   return norm;
 }
 
-Bounds bounds_of(const std::vector<InstanceRecord>& records) {
-  Bounds all = records.front().bounds;
-  for (const InstanceRecord& record : records)
-    all = {glm::min(all.min, record.bounds.min), glm::max(all.max, record.bounds.max)};
-  return all;
-}
-
 }  // namespace
 
 OptixStructure::OptixStructure(const OptixContext& context, OptixMemory& memory,
-                               const TriangleTree& tree, OptixHits hits)
-    : context_(context), memory_(memory) {
+                               const TriangleTree& tree, OptixHits hits,
+                               const Primitives& primitives)
+    : context_(context),
+      memory_(memory),
+      content_{tree.instance_count > 0 || primitives.sphere_count > 0,
+               primitives.sphere_count > 0} {
   const auto begin = std::chrono::steady_clock::now();
-  if (tree.instance_count > 0) {
-    build_scene(tree, hits);
+  if (content_.has_instances) {
+    std::vector<Sphere> spheres(primitives.sphere_count);
+    if (content_.has_spheres)
+      memory_.to_host(spheres.data(), primitives.spheres, spheres.size() * sizeof(Sphere));
+    build_scene(tree, hits, spheres);
   } else if (tree.triangle_count > 0) {
     build_triangles(tree, hits);
   }
@@ -63,23 +66,33 @@ OptixStructure::OptixStructure(const OptixContext& context, OptixMemory& memory,
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 }
 
-void OptixStructure::build_triangles(const TriangleTree& tree, OptixHits hits) {
+Bounds OptixStructure::bounds_of_triangles(const TriangleTree& tree) const {
   std::vector<Triangle> triangles(tree.triangle_count);
   memory_.to_host(triangles.data(), tree.triangles, triangles.size() * sizeof(Triangle));
-  Bounds all = triangle_bounds(triangles[0].v0, triangles[0].v1, triangles[0].v2);
-  for (const Triangle& t : triangles) {
-    const Bounds box = triangle_bounds(t.v0, t.v1, t.v2);
-    all = {glm::min(all.min, box.min), glm::max(all.max, box.max)};
-  }
+  Bounds all;
+  for (const Triangle& t : triangles) all.grow(triangle_bounds(t.v0, t.v1, t.v2));
+  return all;
+}
+
+void OptixStructure::build_triangles(const TriangleTree& tree, OptixHits hits) {
+  const Bounds all = bounds_of_triangles(tree);
   reach_ = {0.5f * (all.min + all.max), near_reach * size_of(all), 0};
   handle_ = build_group(tree.triangles, tree.triangle_count, hits, {near_error * size_of(all)});
 }
 
 /// The groups and the instances.
-void OptixStructure::build_scene(const TriangleTree& tree, OptixHits hits) {
+void OptixStructure::build_scene(const TriangleTree& tree, OptixHits hits,
+                                 const std::vector<Sphere>& spheres) {
   std::vector<InstanceRecord> records(tree.instance_count);
-  memory_.to_host(records.data(), tree.instances, records.size() * sizeof(InstanceRecord));
-  const Bounds world = bounds_of(records);
+  if (tree.instance_count > 0) {
+    memory_.to_host(records.data(), tree.instances, records.size() * sizeof(InstanceRecord));
+  } else if (tree.triangle_count > 0) {
+    InstanceRecord& all = records.emplace_back();
+    all.slot_count = tree.triangle_count, all.bounds = bounds_of_triangles(tree);
+  }
+  Bounds world;
+  for (const InstanceRecord& record : records) world.grow(record.bounds);
+  for (const Sphere& sphere : spheres) world.grow(sphere_bounds(sphere));
   reach_ = {0.5f * (world.min + world.max), instance_reach * size_of(world), 0};
   const Bounds reached{reach_.centre - Vec3(reach_.distance),
                        reach_.centre + Vec3(reach_.distance)};
@@ -103,30 +116,59 @@ void OptixStructure::build_scene(const TriangleTree& tree, OptixHits hits) {
     groups[g].handle = build_group(tree.triangles + groups[g].first_slot, groups[g].slot_count,
                                    hits, {margins[g]});
   }
-  handle_ = build_instances(records, groups);
+  handle_ = build_instances(records, groups, build_spheres(spheres, reached));
+}
+
+/// As boxes, in world space.
+optix::TraversableHandle OptixStructure::build_spheres(const std::vector<Sphere>& spheres,
+                                                       const Bounds& reached) {
+  if (spheres.empty()) return 0;
+  check_count("spheres", spheres.size(), optix::property_max_primitives);
+  const float margin = sphere_error * size_inside({}, reached);
+  reach_.cull_margin = std::max(reach_.cull_margin, margin);
+  std::vector<optix::Box> boxes(spheres.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Bounds box = sphere_bounds(spheres[i]);
+    for (int axis = 0; axis < 3; ++axis) {
+      boxes[i].min[axis] = lowered(box.min[axis], margin);
+      boxes[i].max[axis] = raised(box.max[axis], margin);
+    }
+  }
+  const OptixBuffer device(memory_, boxes.size() * sizeof(optix::Box), "OptiX's boxes");
+  memory_.to_device(device.get(), boxes.data(), device.bytes());
+  return build_boxes(device, static_cast<std::uint32_t>(boxes.size()));
+}
+
+void OptixStructure::check_count(const char* what, std::size_t count, int property) const {
+  const unsigned most = context_.property(property);
+  if (count > most)
+    throw Error(fmt::format("--accel optix: {} {}; OptiX takes at most {}", count, what, most));
+}
+
+optix::TraversableHandle OptixStructure::build_boxes(const OptixBuffer& boxes,
+                                                     std::uint32_t count) {
+  const optix::DevicePointer address = boxes.address();
+  const unsigned flags = optix::geometry_none;
+  optix::BuildInput input{};
+  input.type = optix::input_custom;
+  input.boxes.boxes = &address;
+  input.boxes.count = count;
+  input.boxes.stride = sizeof(optix::Box);
+  input.boxes.flags = &flags;
+  input.boxes.record_count = 1;
+  return build(input);
 }
 
 optix::TraversableHandle OptixStructure::build_group(const Triangle* triangles, std::uint32_t count,
                                                      OptixHits hits, const OptixBoxMargin& margin) {
-  const unsigned most = context_.property(optix::property_max_primitives);
-  if (count > most) {
-    throw Error(fmt::format("--accel optix: a group has {} triangles; OptiX takes at most {}",
-                            count, most));
-  }
-  optix::BuildInput input{};
-  const unsigned flags = optix::geometry_none;
+  check_count("triangles of a group", count, optix::property_max_primitives);
   if (hits == OptixHits::custom) {
     const OptixBuffer boxes(memory_, count * sizeof(optix::Box), "OptiX's boxes");
     memory_.enqueue_boxes(static_cast<optix::Box*>(boxes.get()), triangles, count, margin);
-    const optix::DevicePointer address = boxes.address();
-    input.type = optix::input_custom;
-    input.boxes.boxes = &address;
-    input.boxes.count = count;
-    input.boxes.stride = sizeof(optix::Box);
-    input.boxes.flags = &flags;
-    input.boxes.record_count = 1;
-    return build(input);
+    return build_boxes(boxes, count);
   }
+  optix::BuildInput input{};
+  const unsigned flags = optix::geometry_none;
   static_assert(sizeof(Triangle) == 3 * 16);  // a vertex is the first 12 of 16 bytes
   const auto address = reinterpret_cast<optix::DevicePointer>(triangles);
   input.type = optix::input_triangles;
@@ -141,12 +183,8 @@ optix::TraversableHandle OptixStructure::build_group(const Triangle* triangles, 
 }
 
 optix::TraversableHandle OptixStructure::build_instances(const std::vector<InstanceRecord>& records,
-                                                         const std::vector<Group>& groups) {
-  const unsigned most = context_.property(optix::property_max_instances);
-  if (records.size() > most) {
-    throw Error(fmt::format("--accel optix: the scene has {} instances; OptiX takes at most {}",
-                            records.size(), most));
-  }
+                                                         const std::vector<Group>& groups,
+                                                         optix::TraversableHandle spheres) {
   std::vector<optix::Instance> instances(records.size());
   for (std::size_t i = 0; i < records.size(); ++i) {
     optix::Instance& instance = instances[i];
@@ -158,6 +196,16 @@ optix::TraversableHandle OptixStructure::build_instances(const std::vector<Insta
     instance.group =
         std::ranges::lower_bound(groups, records[i].first_slot, {}, &Group::first_slot)->handle;
   }
+  if (spheres != 0) {
+    optix::Instance& instance = instances.emplace_back();
+    static_assert(sizeof(Affine) == sizeof instance.to_world);
+    const Affine identity;
+    std::memcpy(instance.to_world, &identity, sizeof instance.to_world);
+    instance.record_offset = optix_records;
+    instance.visibility = 0xff;
+    instance.group = spheres;
+  }
+  check_count("instances", instances.size(), optix::property_max_instances);
   const OptixBuffer device(memory_, instances.size() * sizeof(optix::Instance),
                            "OptiX's instances");
   memory_.to_device(device.get(), instances.data(), device.bytes());

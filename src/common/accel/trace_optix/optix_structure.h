@@ -1,5 +1,5 @@
-// The structures that OptiX builds over a scene's triangles: one for each group, and one over the
-// instances.
+// The structures that OptiX builds over a scene's triangles and spheres: one for each group, and
+// one over the instances.
 #pragma once
 
 #include <vector>
@@ -24,12 +24,15 @@ struct OptixReach {
 class OptixStructure {
  public:
   /// Over the triangles of `tree`, in the device's memory; their slots are OptiX's numbers of
-  /// primitives, counted from the group's first one. `memory` must outlive the structure.
+  /// primitives, counted from the group's first one. And over the spheres of `primitives`, also
+  /// there, which is an instance, as then all triangles without instances are. `memory` must
+  /// outlive the structure.
   OptixStructure(const OptixContext& context, OptixMemory& memory, const TriangleTree& tree,
-                 OptixHits hits);
+                 OptixHits hits, const Primitives& primitives = {});
 
   optix::TraversableHandle handle() const { return handle_; }
   const OptixReach& reach() const { return reach_; }
+  const OptixContent& content() const { return content_; }
   /// Wall time of building and compaction.
   double build_ms() const { return build_ms_; }
   std::size_t bytes_built() const { return bytes_built_; }
@@ -42,11 +45,16 @@ class OptixStructure {
   };
 
   void build_triangles(const TriangleTree& tree, OptixHits hits);
-  void build_scene(const TriangleTree& tree, OptixHits hits);
+  void build_scene(const TriangleTree& tree, OptixHits hits, const std::vector<Sphere>& spheres);
+  optix::TraversableHandle build_spheres(const std::vector<Sphere>& spheres, const Bounds& reached);
+  optix::TraversableHandle build_boxes(const OptixBuffer& boxes, std::uint32_t count);
   optix::TraversableHandle build_group(const Triangle* triangles, std::uint32_t count,
                                        OptixHits hits, const OptixBoxMargin& margin);
   optix::TraversableHandle build_instances(const std::vector<InstanceRecord>& records,
-                                           const std::vector<Group>& groups);
+                                           const std::vector<Group>& groups,
+                                           optix::TraversableHandle spheres);
+  Bounds bounds_of_triangles(const TriangleTree& tree) const;
+  void check_count(const char* what, std::size_t count, int property) const;
   optix::TraversableHandle build(const optix::BuildInput& input);
 
   const OptixContext& context_;
@@ -54,6 +62,7 @@ class OptixStructure {
   std::vector<OptixBuffer> buffers_;
   optix::TraversableHandle handle_ = 0;
   OptixReach reach_;
+  OptixContent content_;
   double build_ms_ = 0;
   std::size_t bytes_built_ = 0, bytes_ = 0;
 };

@@ -9,19 +9,25 @@ namespace pt {
 
 class OptixTracer {
  public:
-  /// Builds both. `tree`: on the device; it and `memory` must outlive the tracer. Throws Error.
-  OptixTracer(OptixMemory& memory, const TriangleTree& tree, OptixHits hits,
-              const OptixModule& module)
+  /// Builds both. `scene`: a Scene, on the device; it and `memory` must outlive the tracer. Throws
+  /// Error.
+  template <class Scene>
+  OptixTracer(OptixMemory& memory, const Scene& scene, OptixHits hits, const OptixModule& module)
       : context_(std::make_shared<const OptixLibrary>()),
-        structure_(context_, memory, tree, hits),
-        pipeline_(context_, memory, module, hits, tree.instance_count > 0) {}
+        structure_(context_, memory, scene.triangles, hits, scene.primitives),
+        pipeline_(context_, memory, module, hits, structure_.content()) {}
 
   /// Enqueues `width` threads; `params` has what the module's programs are launched with.
   void launch(OptixPipeline::Launch kind, const void* params, std::uint32_t width) {
     pipeline_.launch(kind, params, width);
   }
 
-  OptixScene scene(const TriangleTree& tree) const { return optix_scene(tree, structure_); }
+  template <class Scene>
+  OptixScene scene(const Scene& scene) const {
+    OptixScene seen = optix_scene(scene.triangles, structure_);
+    seen.primitives = scene.primitives, seen.primitive_nodes = scene.bvh_nodes;
+    return seen;
+  }
 
   /// `reorders`: the programs ask for it.
   void describe(RenderReport& report, bool reorders) const {
