@@ -12,6 +12,7 @@
 #include "common/accel/trace_optix/optix_rays.h"
 #include "common/accel/trace_optix/optix_tracer.h"
 #include "common/error/error.h"
+#include "common/scene/data/scene.h"
 
 namespace pt {
 namespace {
@@ -68,8 +69,7 @@ struct World {
   std::vector<HitRecord> trace(const RaySet& set) {
     std::vector<HitRecord> hits(set.rays.size(), HitRecord{-7, 7});
     OptixRayParams params;
-    params.scene = optix_scene(data.view(), structure);
-    params.scene.primitives = primitives, params.scene.primitive_nodes = sphere_nodes.data();
+    params.scene = optix_scene(data.view(), structure, primitives, sphere_nodes.data());
     params.rays.rays = set.rays.data(), params.rays.hits = hits.data();
     params.rays.count = static_cast<std::uint32_t>(hits.size());
     const auto kind = set.type == RayType::any ? OptixPipeline::any : OptixPipeline::closest;
@@ -88,7 +88,8 @@ int count_differences(World& world, const RaySet& set) {
     for (std::uint32_t k = 0; k < world.spheres.size(); ++k)
       keep_nearer(nearest, sphere_distance(world.spheres[k], ray.ray()), k);
     if (set.type == RayType::any) {
-      const bool met = !nearest.is_miss() || any_hit(world.data, ray.ray(), ray.t_min, ray.t_max);
+      const bool met =
+          nearest.t < ray.t_max || any_hit(world.data, ray.ray(), ray.t_min, ray.t_max);
       differ += (hits[i].t == 0) != met;
       continue;
     }
@@ -101,7 +102,8 @@ int count_differences(World& world, const RaySet& set) {
   return differ;
 }
 
-/// Of all sizes, some twice; one is a ground below the others.
+/// Of all sizes, some twice; one is a ground below the others. And dots, for which rounding is
+/// much.
 std::vector<Sphere> many_spheres() {
   TestRandom random(3);
   std::vector<Sphere> spheres{{{0, -200, 0}, 190.0f * 190.0f}};
@@ -110,27 +112,32 @@ std::vector<Sphere> many_spheres() {
     spheres.push_back({point_in_cube(random, 20), radius * radius});
     if (i % 5 == 0) spheres.push_back(spheres.back());
   }
+  for (int i = 0; i < 10; ++i) spheres.push_back({point_in_cube(random, 0.02f), 1e-6f});
   return spheres;
 }
 
-/// From near and far towards silhouettes: a few ulps of the ray's length beside them.
-RaySet grazing_rays(const std::vector<Sphere>& spheres, int count, RayType type) {
+/// From near and far towards silhouettes, a few ulps of the ray's length beside them; those of
+/// `faces` near where the sphere touches its box.
+RaySet grazing_rays(const std::vector<Sphere>& spheres, int count, RayType type, bool faces) {
   TestRandom random(7);
   RaySet set;
   set.type = type;
   for (int i = 0; i < count; ++i) {
     const Sphere& sphere = spheres[static_cast<std::size_t>(i) % spheres.size()];
-    const Vec3 origin = point_in_cube(random, i % 3 == 0 ? 900.0f : 60.0f);
-    const Vec3 to = sphere.center - origin;
-    const Vec3 side = glm::normalize(glm::cross(to, point_in_cube(random, 2)));
-    // The tangent meets the silhouette's circle at this sine of the angle at the origin.
-    const double distance = glm::length(glm::dvec3(to)), sine = sphere.radius() / distance;
-    if (!(sine < 0.99)) continue;
-    const double aimed = sine * (1 + (random.unit() - 0.5) * 4e-7 * (i % 2 == 0 ? 1 : 1e5));
-    const glm::dvec3 direction =
-        glm::normalize(glm::dvec3(to)) * std::sqrt(1 - aimed * aimed) + glm::dvec3(side) * aimed;
-    set.rays.push_back({origin, 0, Vec3(glm::normalize(direction)), infinite_distance});
-    if (i % 4 == 0) set.rays.back().t_max = static_cast<float>(distance);
+    glm::dvec3 direction(glm::normalize(point_in_cube(random, 1)));
+    glm::dvec3 side = glm::normalize(glm::cross(direction, glm::dvec3(point_in_cube(random, 1))));
+    if (faces) {
+      const int axis = i / 2 % 3;
+      side = glm::dvec3(0), side[axis] = i % 4 < 2 ? 1 : -1;
+      direction[axis] *= 0.01;
+      direction = glm::normalize(direction);
+    }
+    const double length = 100 * random.unit();
+    const double beside = (random.unit() - 0.5) * (i % 2 == 0 ? 2e-8 : 1e-4) * length;
+    const glm::dvec3 origin =
+        glm::dvec3(sphere.center) + side * (double{sphere.radius()} + beside) - length * direction;
+    set.rays.push_back({Vec3(origin), 0, Vec3(direction), infinite_distance});
+    if (i % 4 == 0) set.rays.back().t_max = static_cast<float>(length);
   }
   return set;
 }
@@ -182,28 +189,55 @@ TEST_P(Optix, GivesTheHitsOfSpheres) {
        {tree_kinds[2].build({}), tree_kinds[2].build({make_soup(60, 5)}),
         tree_kinds[2].build(meshes.meshes, meshes.instances)}) {
     World world(tree, GetParam(), spheres);
-    for (const RayType type : {RayType::closest, RayType::any})
-      expect_equal(world, grazing_rays(spheres, 3000, type));
+    for (const RayType type : {RayType::closest, RayType::any}) {
+      for (const bool faces : {false, true})
+        expect_equal(world, grazing_rays(spheres, 2000, type, faces));
+    }
   }
 }
 
-// Boxes hold the points of grazing rays that our test meets beyond the sphere.
-TEST_P(Optix, SpheresAreOfferedWhereRoundingWidensThem) {
+double reach_of_hits(const Sphere& sphere, double distance) {
+  const double radius = std::sqrt(double{sphere.radius_squared});
+  return radius + half_ulp * (23 * distance + 14 * radius);
+}
+
+// Rays begin anywhere within OptixReach.
+TEST(OptixSpheres, HaveBoxesForTheFarthestRays) {
+  UsedFakeOptix fake;
   const std::vector<Sphere> spheres = many_spheres();
-  World world(tree_kinds[2].build({}), GetParam(), spheres);
-  int beyond = 0;
-  for (const RayRecord& ray : grazing_rays(spheres, 3000, RayType::closest).rays) {
-    for (const Sphere& sphere : spheres) {
-      const glm::dvec3 to = glm::dvec3(sphere.center) - glm::dvec3(ray.origin);
-      const glm::dvec3 d = glm::normalize(glm::dvec3(ray.direction));
-      const double distance = glm::length(to - glm::dot(to, d) * d);
-      const double over = distance - std::sqrt(double{sphere.radius_squared});
-      if (sphere_distance(sphere, ray.ray()) <= 0) continue;
-      beyond += over > 0;
-      EXPECT_LE(over, 23 * half_ulp * glm::length(to) + 14 * half_ulp * sphere.radius());
+  const World world(tree_kinds[2].build({}), OptixHits::any_hit, spheres);
+  const OptixReach& reach = world.structure.reach();
+  int boxes = 0;
+  for (const auto& [handle, structure] : fake->structures) {
+    for (std::size_t i = 0; i < structure.boxes.size(); ++i, ++boxes) {
+      const Sphere& sphere = world.spheres.at(i);
+      const glm::dvec3 center(sphere.center);
+      const double distance =
+          glm::length(glm::abs(center - glm::dvec3(reach.centre)) + double{reach.distance});
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_LT(structure.boxes[i].min[axis], center[axis] - reach_of_hits(sphere, distance));
+        EXPECT_GT(structure.boxes[i].max[axis], center[axis] + reach_of_hits(sphere, distance));
+      }
     }
   }
-  EXPECT_GT(beyond, 10);
+  EXPECT_EQ(boxes, static_cast<int>(spheres.size()));
+}
+
+// The bound on which their boxes rest: our test meets them beyond their surface, too.
+TEST(OptixSpheres, AreMetNearTheirSurface) {
+  const std::vector<Sphere> spheres = many_spheres();
+  int beyond = 0;
+  for (const RayRecord& ray : grazing_rays(spheres, 20000, RayType::closest, false).rays) {
+    for (const Sphere& sphere : spheres) {
+      const float t = sphere_distance(sphere, ray.ray());
+      if (!(t > 0)) continue;
+      const glm::dvec3 to = glm::dvec3(sphere.center) - glm::dvec3(ray.origin);
+      const double from_center = glm::length(double{t} * glm::dvec3(ray.direction) - to);
+      beyond += from_center > reach_of_hits(sphere, 0);
+      EXPECT_LE(from_center, reach_of_hits(sphere, glm::length(to)));
+    }
+  }
+  EXPECT_GT(beyond, 100);
 }
 
 TEST_P(Optix, FindsSomethingAndMisses) {

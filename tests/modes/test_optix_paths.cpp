@@ -127,7 +127,9 @@ TEST_P(OptixPaths, OfTrianglesGiveTheSerialImage) {
 }
 TEST_P(OptixPaths, OfInstancesGiveTheSerialImage) { expect_equal(made("instances:4")); }
 
-TEST_P(OptixPaths, OfSpheresGiveTheSerialImage) { expect_equal(made("spheres")); }
+TEST_P(OptixPaths, OfSpheresGiveTheSerialImage) {
+  expect_equal(made("spheres"), {{"kernel-set", "general"}});
+}
 
 TEST_P(OptixPaths, OfAllShapesGiveTheSerialImage) {
   for (const SceneData& scene : {mixed_scene(), lit_room()}) expect_equal(scene);

@@ -67,10 +67,12 @@ class OptixStructure {
   std::size_t bytes_built_ = 0, bytes_ = 0;
 };
 
-/// What the programs are told of the structure over `tree`.
-inline OptixScene optix_scene(const TriangleTree& tree, const OptixStructure& structure) {
+/// What the programs are told of the structure over both, and of our tree over spheres.
+inline OptixScene optix_scene(const TriangleTree& tree, const OptixStructure& structure,
+                              const Primitives& primitives = {}, const Bvh2Node* nodes = nullptr) {
   const OptixReach& reach = structure.reach();
-  return {tree, structure.handle(), reach.cull_margin, reach.centre, reach.distance};
+  return {tree, structure.handle(), reach.cull_margin, reach.centre, reach.distance, primitives,
+          nodes};
 }
 
 }  // namespace pt

@@ -24,9 +24,7 @@ class OptixTracer {
 
   template <class Scene>
   OptixScene scene(const Scene& scene) const {
-    OptixScene seen = optix_scene(scene.triangles, structure_);
-    seen.primitives = scene.primitives, seen.primitive_nodes = scene.bvh_nodes;
-    return seen;
+    return optix_scene(scene.triangles, structure_, scene.primitives, scene.bvh_nodes);
   }
 
   /// `reorders`: the programs ask for it.
