@@ -145,6 +145,11 @@ TEST_P(OptixPaths, FromFarAwayGiveTheSerialImage) {
   expect_equal(made("statue:1K"), camera_alone);
   EXPECT_GT(all, 9);
   EXPECT_EQ(traversals_ == 0, GetParam() != OptixHits::built_in);
+  SceneData shapes = mixed_scene();
+  shapes.camera = {{900, 500, 900}, {0, 0, 0}, {0, 1, 0}, 3.0f, 0.0f, 1000.0f};
+  expect_equal(shapes);
+  expect_equal(shapes, {{"max-depth", "1"}, {"nee", "off"}});
+  EXPECT_EQ(traversals_ == 0, GetParam() != OptixHits::built_in);
 }
 
 TEST_P(OptixPaths, WithRouletteGiveTheSerialImage) {

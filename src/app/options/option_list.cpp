@@ -322,7 +322,7 @@ void add_execution(std::vector<OptionEntry>& list) {
            "Acceleration structure: none (every primitive is tested), a\n"
            "binary BVH, a compressed 8-wide BVH (triangles only), or\n"
            "Embree's (CPU, triangles only); optix: NVIDIA's OptiX (CUDA,\n"
-           "triangles only); auto: by scene and device, never optix")
+           "no motion); auto: by scene and device, never optix")
       .add(choice("optix-hits", &Options::optix_hits),
            "--accel optix: who decides what a ray hits. custom: OptiX\n"
            "finds boxes, our test decides; any-hit: it finds triangles,\n"

@@ -328,8 +328,9 @@ class Planner {
 
   /// Media whose rays nobody traces as a queue.
   bool has_unbounded_media() const {
-    return scene_.has_media && (scene_.has_open_boundaries || o_.wave_collisions > 0 ||
-                                (device_.is_cuda && scene_.has_sparse));
+    const bool is_bounded = !scene_.has_open_boundaries && o_.wave_collisions == 0 &&
+                            !(device_.is_cuda && scene_.has_sparse);
+    return scene_.has_media && !is_bounded;
   }
 
   bool warps_can_persist() const {

@@ -19,8 +19,12 @@ constexpr float near_reach = 8.0f, near_error = 1.75f * (near_reach + 0.5f) * hi
 // ray's two ends, and what our transform, OptiX's and its inverse lose.
 constexpr float instance_reach = 1.5f,
                 instance_error = 1.75f * 2 * hit_error_distance + 64.0f * half_ulp;
-// The same of spheres (docs/design/optix.md), of the largest coordinate: for a distance of up to
-// 1.75 * 2 times that, a radius of a third and what OptiX's transform and the box's planes lose.
+// The same of spheres: for a distance D of up to 1.75 * 2 times the largest coordinate, a radius r
+// of a third, and what OptiX's transform and the box's planes lose. sphere_distance() finds t = b -
+// h with off = c - o - b d, c - o and b d being wrong by 3u D in all and t by u (D + r); h^2 +
+// off^2 = r^2 within 14u r^2 (5u of the root, 4u r^2 of the sum, which is >= 0). o + t d - c is -(h
+// d + off) but for that, |d|^2 is 1 within 12u, and d . off at most 19u D. So the exact ray's point
+// at t lies no farther from c than r + 23u D + 14u r.
 constexpr float sphere_error = (1.75f * 2 * 23 + 20.0f / 3 + 64) * half_ulp;
 
 float size_of(const Bounds& bounds) { return max_abs(bounds.max - bounds.min); }
