@@ -7,7 +7,8 @@ its threads (`reorder`), as `--kernel sort` does in software. The host launches 
 path is finished outside of them. `mrays_*` is rays and shadow rays per second of the stages that trace
 (10^6/s; wavefront), `ratio_*` our wavefront's time of the whole render divided by the row's, `registers` those
 of a thread of our megakernel (OptiX tells none; PTEXP_OPTIX_LOG=4 prints what it compiles). Images of all
-rows but `any-hit` and `built-in` are compared with ours first; those may differ in some pixels. A GPU without
+rows but `any-hit` and `built-in` are compared with ours first; those may differ in some pixels, and their
+ratios are of times per ray, since their paths may have some other rays. A GPU without
 RT cores (an H100 or H200 has none) runs OptiX by software and reorders nothing: then a row says nothing of
 hardware.
 """
@@ -18,7 +19,7 @@ from lib import harness
 from lib.harness import Configuration, Experiment, Plot
 from lib.kernels import kernels_of
 from lib.options import add_image_options
-from lib.ratios import ratio_labels, set_ratios
+from lib.ratios import ratio_labels, rays_of, set_ratios
 from lib.scene_files import add_scene_files, scene_files, short_name
 
 BASE = "ours"
@@ -37,6 +38,11 @@ VARIANTS = {BASE: f"{WAVEFRONT} --accel cwbvh --schedule host --finish-paths 0",
 SCENES = ["statue:1M", "terrain:1M", "boxes", "instances:100K", "dial:16:0.5:closed"]
 QUICK = ["statue:3K", "instances:20"]
 PARTS = {"median": "median", "min": "max", "max": "min"}
+
+
+def has_other_hits(variant):
+    """Whether OptiX decides, so that some pixels, and the rays of their paths, may be others."""
+    return "any-hit" in variant or "built-in" in variant
 
 
 def add_arguments(parser):
@@ -59,7 +65,7 @@ def configurations(arguments, _device):
         f"--max-depth 8 --builder hploc {options}",
         {"panel": "", "series": variant, "x": name, "variant": variant,
          **{f"mrays_{part}": "" for part in PARTS}, **ratio_labels(), "registers": ""},
-        same_image="" if "any-hit" in options or "built-in" in options else name)
+        same_image="" if has_other_hits(variant) else name)
         for name, scene in scenes_of(arguments).items() for variant, options in VARIANTS.items()]
 
 
@@ -72,12 +78,11 @@ def traced_ms(row, part):
 
 
 def finish(rows, _arguments):
-    set_ratios(rows, BASE, scene_of)
+    set_ratios(rows, BASE, scene_of, lambda row: has_other_hits(row["variant"]))
     for row in rows:
-        rays = int(row["rays"]) + int(row["shadow_rays"] or 0)
         for part, time in PARTS.items():
             if milliseconds := traced_ms(row, time):
-                row[f"mrays_{part}"] = f"{1e-3 * rays / milliseconds:.6g}"
+                row[f"mrays_{part}"] = f"{1e-3 * rays_of(row) / milliseconds:.6g}"
         if kernel := kernels_of(row).get("megakernel"):
             row["registers"] = str(kernel.registers)
 

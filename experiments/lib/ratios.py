@@ -4,6 +4,8 @@ from lib.intervals import in_rounds, interval_of_ratio
 
 # A ratio is lowest if the base is as fast and the row as slow as they may be: wider than need be.
 OPPOSITES = [("median", "median"), ("min", "max"), ("max", "min"), ("low", "high"), ("high", "low")]
+# Of rays, in rows whose hits are others': more would be another scene or a fault.
+MOST_OTHER_RAYS = 0.01
 
 
 def ratio_labels():
@@ -11,27 +13,44 @@ def ratio_labels():
     return {f"ratio_{part}": "" for part, _ in OPPOSITES}
 
 
-def set_ratios(rows, base_variant, scene_of):
+def rays_of(row):
+    return int(row["rays"]) + int(row["shadow_rays"] or 0)
+
+
+def check_rays(row, base, has_other_hits):
+    """Both must have traced the same rays, or nearly so where hits are others'; else HarnessError."""
+    for column in ("paths", "rays", "shadow_rays"):
+        if row[column] == base[column]:
+            continue
+        found, expected = int(row[column] or 0), int(base[column] or 0)
+        if not has_other_hits or column == "paths":
+            wanted = "equal numbers"
+        elif abs(found - expected) > MOST_OTHER_RAYS * expected:
+            wanted = f"numbers within {MOST_OTHER_RAYS:.0%}"
+        else:
+            continue
+        raise HarnessError(f"{row['name']} has {row[column]} {column}, {base['name']} has "
+                           f"{base[column]}; expected {wanted}")
+
+
+def set_ratios(rows, base_variant, scene_of, has_other_hits=lambda row: False):
     """The base's time by the row's, for the rows whose scene has a base. Both must have traced the
-    same rays, else HarnessError."""
+    same rays (check_rays); the ratio is that of times per ray where has_other_hits(row)."""
     bases = {scene_of(row): row for row in rows if row["variant"] == base_variant}
     for row in rows:
         base = bases.get(scene_of(row))
         if base is None:
             continue
-        for column in ("paths", "rays", "shadow_rays"):
-            if row[column] != base[column]:
-                raise HarnessError(f"{row['name']} has {row[column]} {column}, {base['name']} has "
-                                   f"{base[column]}; expected equal numbers")
+        check_rays(row, base, has_other_hits(row))
+        more = rays_of(row) / rays_of(base) if rays_of(base) > 0 else 1
         for part, opposite in OPPOSITES:
-            ratio = float(base[f"kernel_ms_{part}"]) / float(row[f"kernel_ms_{opposite}"])
+            ratio = more * float(base[f"kernel_ms_{part}"]) / float(row[f"kernel_ms_{opposite}"])
             row[f"ratio_{part}"] = f"{ratio:.4f}"
 
 
 def ns_per_ray(row, part="median"):
     """A row's time by its rays and shadow rays, in ns."""
-    rays = int(row["rays"]) + int(row["shadow_rays"])
-    return f"{1e6 * float(row[f'kernel_ms_{part}']) / rays:.4g}"
+    return f"{1e6 * float(row[f'kernel_ms_{part}']) / rays_of(row):.4g}"
 
 
 def runs_of(row):

@@ -487,6 +487,51 @@ class Dial(unittest.TestCase):
             self.assertEqual(set(map(len, groups.values())), {len(self.dial.VARIANTS) - fewer})
 
 
+class Hardware(unittest.TestCase):
+    def setUp(self):
+        self.hardware = importlib.import_module("hardware")
+
+    def rows(self, variant, **changes):
+        counts = {"paths": "90", "rays": "900", "shadow_rays": "100", "kernels": "", "x": "statue",
+                  **{f"kernel_ms_{part}": "10" for part in ("min", "median", "max", "low", "high")}}
+        slower = {f"kernel_ms_{part}": "20" for part in ("min", "median", "max", "low", "high")}
+        return [{**counts, "name": "a", "variant": self.hardware.BASE},
+                {**counts, **slower, "name": "b", "variant": variant, "intersect_ms_median": "5",
+                 "shadow_ms_median": "5", **changes}]
+
+    def ratio(self, variant, **changes):
+        rows = self.rows(variant, **changes)
+        self.hardware.finish(rows, None)
+        return rows[1]["ratio_median"]
+
+    def test_rows_whose_hits_are_others_are_compared_by_the_ray(self):
+        self.assertEqual(self.ratio("custom"), "0.5000")
+        for variant in ("any-hit", "built-in", "megakernel built-in, reorder"):
+            self.assertEqual(self.ratio(variant), "0.5000")
+            self.assertEqual(self.ratio(variant, rays="905", shadow_rays="101"), "0.5030")
+            for changes, why in (({"rays": "910"}, "910 rays.* within 1%"),
+                                 ({"shadow_rays": ""}, " shadow_rays.* within 1%"),
+                                 ({"paths": "91"}, "91 paths.* equal numbers")):
+                with self.assertRaisesRegex(harness.HarnessError, why):
+                    self.ratio(variant, **changes)
+
+    def test_rows_with_our_hits_have_our_rays(self):
+        for variant in ("custom", "megakernel loop", "megakernel custom, reorder"):
+            with self.assertRaisesRegex(harness.HarnessError, "901 rays.* equal numbers"):
+                self.ratio(variant, rays="901")
+
+    def test_speed_is_of_the_stages_that_trace(self):
+        rows = self.rows("any-hit", rays="905")
+        self.hardware.finish(rows, None)
+        self.assertEqual(rows[1]["mrays_median"], "0.1005")
+
+    def test_images_are_promised_where_our_test_decides(self):
+        arguments = types.SimpleNamespace(quick=True)
+        for one in self.hardware.configurations(arguments, None):
+            own = "any-hit" in one.arguments or "built-in" in one.arguments
+            self.assertEqual(one.same_image == "", own, one.arguments)
+
+
 class Divergence(unittest.TestCase):
     def setUp(self):
         self.divergence = importlib.import_module("divergence")
