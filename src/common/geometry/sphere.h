@@ -30,6 +30,22 @@ PT_HD float sphere_distance(const Sphere& sphere, const Ray& ray) {
   return select(discriminant<0.0f, -1.0f, near> 0.0f ? near : b + half_chord);
 }
 
+/// The same bits by operations that are written out as CUDA's compiler contracts those above: that
+/// of OptiX contracts others.
+PT_HD float written_sphere_distance(const Sphere& sphere, const Ray& ray) {
+  const Vec3 oc = sphere.center - ray.origin, d = ray.direction;
+  const float b =
+      fused_multiply_add(oc.z, d.z, fused_multiply_add(oc.x, d.x, multiply_rounded(oc.y, d.y)));
+  float discriminant = sphere.radius_squared;
+  PT_UNROLL(3)
+  for (int i = 0; i < 3; ++i) {
+    const float off = fused_multiply_add(-b, d[i], oc[i]);
+    discriminant = fused_multiply_add(-off, off, discriminant);
+  }
+  const float half_chord = fast_sqrt(discriminant), near = add_rounded(b, -half_chord);
+  return select(discriminant<0.0f, -1.0f, near> 0.0f ? near : add_rounded(b, half_chord));
+}
+
 /// The point of the surface nearest to the ray's point at `t`.
 PT_HD SurfacePoint sphere_surface(const Sphere& sphere, const Ray& ray, float t) {
   const Vec3 normal = normalize(ray.origin + t * ray.direction - sphere.center);
