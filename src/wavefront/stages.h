@@ -418,6 +418,7 @@ struct ShadeMedium {
     Ray ray;
     PathState path = pool.load_path(slot, ray);
     pool.load_medium(slot, path);
+    set_time<Traits>(scene, samples.id_of(path.index), path);
     ++path.rays;
     PoolSink<false, true> sink{pool, samples, slot, true};
     const PathId id_of_path = samples.id_of(path.index);
@@ -478,14 +479,14 @@ struct TraceShadowRays : ShadowRays {
       key = shadow_ray_key(scene, path_hash<Traits>(scene, samples.id_of(path_index)),
                            pool.load_shadow_rays(slot));
     }
+    PathState timed;
+    if constexpr (Traits::has_motion) set_time<Traits>(scene, samples.id_of(path_index), timed);
     if constexpr (Traits::has_media) {
       shadow.medium_id = pool.load_shadow_medium_id(slot);
-      const Color passed = shadow_transmittance<Traits>(scene, shadow, key);
+      const Color passed = shadow_transmittance<Traits>(scene, shadow, key, timed.time);
       shadow.radiance = multiply_rounded(shadow.radiance, passed);
       return finish(path_index, shadow, false);
     }
-    PathState timed;
-    if constexpr (Traits::has_motion) set_time<Traits>(scene, samples.id_of(path_index), timed);
     return finish(path_index, shadow, intersect_shadow<Traits>(scene, shadow, key, timed.time));
   }
 };

@@ -118,7 +118,7 @@ void shade_all_surfaces(Executor& execute, const WaveBuffers& b,
 template <class Traits, Branching branching, class Source, class Executor>
 void shade_surfaces(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
   using Shading = ShadingTraits<Traits>;
-  if constexpr (Traits::has_masks) {
+  if constexpr (Traits::has_masks && !Traits::has_motion) {
     if (b.policy.only_triangles)
       return shade_all_surfaces<TrianglesAlone<Shading>, branching>(execute, b, context);
   }

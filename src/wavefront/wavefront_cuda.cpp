@@ -160,6 +160,8 @@ void WavefrontCuda::with_context(const SampleBuffer& batch, Function&& function)
       using Carrying = CarryingSource<>;
       if (plan_.path_bytes > 0)
         return function(WaveKinds<Carrying>{}, context_of(batch, Carrying{source}));
+      if (traits_.has_media && traits_.has_motion)
+        return function(WaveKinds<Source, true, true>{}, context_of(batch, source));
       if (traits_.has_media) return function(WaveKinds<Source, true>{}, context_of(batch, source));
       if (traits_.has_motion)
         return function(WaveKinds<Source, false, true>{}, context_of(batch, source));

@@ -25,4 +25,9 @@ using MovingKinds = WaveKinds<SamplerSource, false, true>;
 template void WavefrontCuda::enqueue_wave_of<MovingKinds>(const SamplerContext&, bool);
 template void WavefrontCuda::enqueue_finish_of<MovingKinds>(const SamplerContext&);
 
+using MovingMediaKinds = WaveKinds<SamplerSource, true, true>;
+
+template void WavefrontCuda::enqueue_wave_of<MovingMediaKinds>(const SamplerContext&, bool);
+template void WavefrontCuda::enqueue_finish_of<MovingMediaKinds>(const SamplerContext&);
+
 }  // namespace pt

@@ -352,7 +352,11 @@ TEST(Motion, RefusesWhatItDoesNotKnow) {
       refusal(moving_room(), [](Options& o) { o.light_selection = LightSelection::tree; }));
   SceneData masked = moving_room();
   masked.camera.hides_emitters = true;
-  expect_refused("knows no masks, far planes or hidden emitters", refusal(masked));
+  EXPECT_EQ(refusal(masked), "");
+  masked.media.emplace_back().albedo_grid = 0, masked.grids.emplace_back();
+  MaterialDescription& filled = masked.materials[masked.meshes[1].material];
+  filled.is_boundary = true, filled.media.inside = 0;
+  expect_refused("a grid of a medium does not move with the medium's boundary", refusal(masked));
 }
 
 TEST(Motion, RefusesKeysThatAreNone) {

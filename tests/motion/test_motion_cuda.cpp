@@ -3,6 +3,7 @@
 
 #include "common/image/compare/compare.h"
 #include "cuda_test.h"
+#include "medium/moving_fog.h"
 #include "mode_cases.h"
 #include "scene/moving_room.h"
 
@@ -40,6 +41,11 @@ std::vector<SceneData> moving_rooms() {
   rooms[5].name = "a mesh that deforms, without instances", keep(rooms[5], false, -1, true);
   rooms[5].instances.clear();
   for (Mesh& mesh : rooms[5].meshes) mesh.group = 0;
+  rooms.push_back(moving_fog_room());
+  SceneData& masked = rooms.emplace_back(moving_room());
+  masked.name = "masks without media";
+  masked.materials[masked.meshes[1].material].opacity = constant_opacity(0.6f);
+  rooms.push_back(moving_spheres());
   return rooms;
 }
 
@@ -141,6 +147,8 @@ TEST_F(CudaMotion, FirstHitsAreThoseOfTheCpu) {
 TEST_F(CudaMotion, ItsArraysAreCounted) {
   const DeviceInfo device = choose_device({DeviceChoice::Kind::cuda, 0});
   SceneData scene = moving_room();
+  scene.add_sphere({0, 2, 0}, 0.1f, 0);
+  scene.motion.spheres = {{0, {{0.0f, {}}, {1.0f, translate({1, 0, 0})}}}};
   const Options options = moving_options("wavefront");
   prepare_scene_for(scene, options, device);
   const PreparedMotion& motion = *scene.motion.prepared;

@@ -66,6 +66,10 @@ SceneProperties moving_mesh() {
   });
 }
 
+SceneProperties moving_masks() {
+  return changed(moving_mesh(), [](SceneProperties& s) { s.has_masks = true; });
+}
+
 DeviceProperties gpu(std::size_t shared_kib = 227) {
   DeviceProperties device;
   device.is_cuda = true, device.block_shared_bytes = shared_kib * 1024;
@@ -378,6 +382,13 @@ const std::vector<Row>& rows() {
        gpu(),
        {{"mode", "wavefront"}, {"accel", "bvh2"}, {"order-surfaces", "on"}}},
       {"motion on a CPU", {}, moving_mesh(), cpu(), {{"accel", "cwbvh"}}},
+      {"motion of masks", {}, moving_masks(), cpu(), {{"accel", "bvh2"}}},
+      {"motion of masks on CUDA", {}, moving_masks(), gpu(), {{"accel", "bvh2"}}},
+      {"motion of masks in wide trees",
+       {{"accel", "cwbvh"}},
+       moving_masks(),
+       cpu(),
+       {{"accel", "cwbvh"}}},
       {"motion without AVX2", {}, moving_mesh(), cpu(false), {{"accel", "bvh2"}}},
       {"meshes that deform",
        {},
@@ -439,8 +450,15 @@ TEST(ExecutionPlan, RefusesWhatMotionOnCudaHasNoKernelsFor) {
       {{{"rng", "xorwow"}}, "--rng xorwow" + begin + "expected --rng philox"},
       {{{"accel", "optix"}}, "--accel optix: OptiX traces what stands still; scene 'x' moves"}};
   for (const auto& [settings, text] : refused) EXPECT_EQ(refusal(settings, moving_mesh()), text);
-  const SceneProperties masked = changed(moving_mesh(), [](auto& s) { s.has_masks = true; });
-  EXPECT_NE(refusal({}, masked).find("motion blur knows no masks"), std::string::npos);
+  EXPECT_EQ(refusal({{"accel", "cwbvh"}}, moving_masks()),
+            "--accel cwbvh: no kernel on CUDA renders scene 'x' (triangles, motion, masks, a far "
+            "plane or hidden emitters) so; expected --accel bvh2");
+  const SceneProperties sparse =
+      changed(moving_masks(), [](auto& s) { s.has_media = s.has_sparse = true; });
+  EXPECT_EQ(refusal({}, sparse),
+            "scene 'x' moves while the shutter is open: on CUDA motion blur knows no sparse grids; "
+            "expected --volume dense or --device cpu");
+  EXPECT_NO_THROW(plan_of({}, sparse, cpu()));
   EXPECT_EQ(refusal({{"builder", "hploc"}}, moving_mesh()),
             "scene 'x' moves while the shutter is open: --builder hploc fits no tree to a motion; "
             "expected auto, sah, sah-reinsert, sbvh or best");

@@ -29,10 +29,10 @@ void for_each_need(EnumSet<Content> contents, Function&& function) {
                 need.scene = {Accel{accel}, Geometry::spheres_and_quads, light};
                 function(need);
               }
-              need.scene = general_traits(Accel{accel}, contents, false, false, false, true);
-              function(need);
               for (const bool masks : {false, true}) {
                 for (const bool media : {false, true}) {
+                  need.scene = general_traits(Accel{accel}, contents, masks, media, false, true);
+                  function(need);
                   for (const bool sparse : {false, on_cuda && media}) {
                     need.scene = general_traits(Accel{accel}, contents, masks, media, sparse);
                     function(need);

@@ -59,7 +59,7 @@ TEST(Dispatch, EveryRowOfTheTableHasAKernel) {
       });
     }
   }
-  EXPECT_EQ(scenes, 26);
+  EXPECT_EQ(scenes, 29);
 }
 
 void expect_no_kernel(const std::function<void()>& call, const std::string& traits) {

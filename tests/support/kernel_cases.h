@@ -22,6 +22,12 @@ inline SceneData scene_of(const KernelRow& row, Lighting light) {
   if (row.geometry == Geometry::spheres_and_quads)
     return built_in(light == Lighting::sky ? "spheres" : "cornell");
   if (row.extras == Extras::with_media) return filled_glasses();
+  if (row.extras == Extras::with_moving_media) {
+    SceneData scene = filled_glasses();
+    scene.name += ", moving";
+    scene.motion.camera = {{0.0f, {}}, {1.0f, translate({0.3f, 0, 0})}};
+    return scene;
+  }
   if (row.extras == Extras::with_sparse)
     return make_cloud_scene({64, 10, 0.9f, true}, VolumeStorage::sparse);
   const bool moves = row.extras == Extras::with_motion;

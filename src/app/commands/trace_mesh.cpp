@@ -58,6 +58,7 @@ SceneData load_traced_scene(const std::string& name) {
 SceneData load_triangles(const std::string& name) {
   SceneData scene = load_traced_scene(name);
   scene.spheres.clear();
+  scene.motion.spheres.clear();
   scene.sphere_material.clear();
   if (scene.triangle_count() == 0) throw Error(fmt::format("{}: has no triangles", name));
   return scene;

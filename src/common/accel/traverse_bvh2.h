@@ -45,10 +45,10 @@ PT_HD SlabHit intersect_slabs(const SlabRay& ray, const Vec4& xy, float min_z, f
 }
 
 /// Visits the leaves' primitives near to far: visit(distance, primitive, t_max) may lower t_max and
-/// ends the traversal by returning true.
-template <class Visit>
-PT_HD bool traverse_bvh2(const Bvh2Node* nodes, const Primitives& primitives, const Ray& ray,
-                         float t_max, Visit&& visit) {
+/// ends the traversal by returning true. `primitives`: Primitives, or MovingPrimitives.
+template <class All, class Visit>
+PT_HD bool traverse_bvh2(const Bvh2Node* nodes, const All& primitives, const Ray& ray, float t_max,
+                         Visit&& visit) {
   constexpr std::uint32_t done = 0x7fffffffu;  // an inner node's number that no tree has
   const SlabRay slab = make_slab_ray(ray);
   std::uint32_t stack[bvh_depth_max];
@@ -82,7 +82,8 @@ PT_HD bool traverse_bvh2(const Bvh2Node* nodes, const Primitives& primitives, co
   return false;
 }
 
-PT_HD Hit closest_hit_bvh2(const Bvh2Node* nodes, const Primitives& primitives, const Ray& ray) {
+template <class All>
+PT_HD Hit closest_hit_bvh2(const Bvh2Node* nodes, const All& primitives, const Ray& ray) {
   Hit hit;
   traverse_bvh2(nodes, primitives, ray, hit.t, [&](float t, std::uint32_t primitive, float& t_max) {
     keep_nearer(hit, t, primitive);
@@ -93,7 +94,8 @@ PT_HD Hit closest_hit_bvh2(const Bvh2Node* nodes, const Primitives& primitives, 
 }
 
 /// Whether anything lies on the ray nearer than `distance`.
-PT_HD bool any_hit_bvh2(const Bvh2Node* nodes, const Primitives& primitives, const Ray& ray,
+template <class All>
+PT_HD bool any_hit_bvh2(const Bvh2Node* nodes, const All& primitives, const Ray& ray,
                         float distance) {
   return traverse_bvh2(nodes, primitives, ray, distance,
                        [&](float t, std::uint32_t, float&) { return t > 0.0f && t < distance; });

@@ -135,8 +135,10 @@ class MaskedQuery : public Query {
  public:
   static constexpr bool has_masks = true;
 
-  PT_HD MaskedQuery(float t_min, float t_max, const Mask& mask)
-      : Query(t_min, t_max), mask_(mask) {}
+  /// `more`: what Query asks for besides.
+  template <class... More>
+  PT_HD MaskedQuery(float t_min, float t_max, const Mask& mask, const More&... more)
+      : Query(t_min, t_max, more...), mask_(mask) {}
 
   /// `t` is that of the hit, or where an instance's box has moved it.
   PT_HD bool hides(const Triangle& triangle, const TriangleHit& hit, float t,
@@ -171,6 +173,8 @@ PT_HD Triangle triangle_at(const TriangleTree& tree, std::uint32_t slot, const M
 template <class Query>
 class MovingQuery : public Query {
  public:
+  static constexpr bool moves = true;
+
   PT_HD MovingQuery(float t_min, float t_max, const Motion& motion, float time)
       : Query(t_min, t_max), motion_(motion), time_(time) {}
 
@@ -200,9 +204,9 @@ class MovingQuery : public Query {
 };
 
 template <class Query>
-inline constexpr bool is_moving_query = false;
-template <class Query>
-inline constexpr bool is_moving_query<MovingQuery<Query>> = true;
+inline constexpr bool is_moving_query = requires {
+  Query::moves;
+};
 
 /// The instance as a query sees it.
 template <class Query>

@@ -36,7 +36,8 @@ struct SceneTraits {
   bool has_masks = false;
   bool has_media = false;
   bool has_sparse = false;  ///< with has_media: grids may be sparse; CUDA's kernels alone ask
-  bool has_motion = false;  ///< during the shutter's interval; without masks and media
+  bool has_motion =
+      false;  ///< during the shutter's interval; with neither masks nor media, or both
 
   constexpr bool operator==(const SceneTraits&) const = default;
   constexpr bool has_lights() const { return lighting != Lighting::sky; }

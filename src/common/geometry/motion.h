@@ -75,6 +75,12 @@ PT_HD Affine pose_at(const MotionSegment* segments, const MotionTrack& track, fl
   return pose_in(segment, fminf(fmaxf(u, 0.0f), 1.0f));
 }
 
+/// A sphere's motion.
+struct alignas(16) SphereTrack {
+  Vec3 center{0.0f};  ///< in the space that the poses take to the world
+  MotionTrack track;
+};
+
 struct Bvh2Node;
 struct Triangle;
 struct CornerAttributes;
@@ -83,8 +89,9 @@ struct CornerAttributes;
 struct Motion {
   const MotionSegment* segments = nullptr;
   const MotionTrack* instances = nullptr;  ///< [InstanceRecord::index]
-  /// [light]: the instance that moves it; then it is a triangle in the instance's space. Else
-  /// `none`.
+  const SphereTrack* spheres = nullptr;    ///< [sphere]; null: none moves
+  /// [light]: the instance that moves it, then it is a triangle in the instance's space; or a
+  /// sphere, by its number and `of_sphere`. Else `none`.
   const std::uint32_t* light_instances = nullptr;
   std::uint32_t light_count = 0;  ///< those after them are not moved
   // Of meshes that deform: what is when the shutter closes. Null: none does.
@@ -95,7 +102,7 @@ struct Motion {
   MotionTrack camera;
   Affine to_camera;  ///< from the world, at the pose that the scene's camera describes
 
-  static constexpr std::uint32_t none = 0xffffffffu;
+  static constexpr std::uint32_t none = 0xffffffffu, of_sphere = 0x80000000u;
 
   PT_HD std::uint32_t instance_of(std::uint32_t light) const {
     return light < light_count ? light_instances[light] : none;
@@ -111,6 +118,7 @@ struct Motion {
 struct MotionTracks {
   std::vector<MotionSegment> segments;
   std::vector<MotionTrack> instances;  ///< by instance, and one for the meshes of group 0
+  std::vector<MotionTrack> spheres;    ///< by MotionData::spheres
   MotionTrack camera;
 
   bool moves(std::size_t instance) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/geometry/bounds.h"
+#include "common/geometry/motion.h"
 #include "common/geometry/quad.h"
 #include "common/geometry/sphere.h"
 #include "common/platform/platform.h"
@@ -49,6 +50,40 @@ PT_HD void keep_nearer(Hit& hit, float t, std::uint32_t primitive) {
 PT_HD float primitive_distance(const Primitives& primitives, std::uint32_t i, const Ray& ray) {
   if (!primitives.is_sphere(i)) return quad_distance(primitives.quad(i), ray);
   return sphere_distance(load_wide(&primitives.spheres[i]), ray);
+}
+
+// Spheres that move, where they are at a time.
+
+PT_HD bool moves(const Motion& motion, std::uint32_t sphere) {
+  return motion.spheres != nullptr && motion.spheres[sphere].track.moves();
+}
+
+/// The pose of a sphere that moves.
+PT_HD Affine sphere_pose(const Motion& motion, std::uint32_t sphere, float time) {
+  return pose_at(motion.segments, motion.spheres[sphere].track, time);
+}
+
+/// A motion keeps its radius.
+PT_HD Sphere sphere_at(const Primitives& primitives, std::uint32_t i, const Motion& motion,
+                       float time) {
+  Sphere sphere = load_wide(&primitives.spheres[i]);
+  if (moves(motion, i))
+    sphere.center = sphere_pose(motion, i, time).point(motion.spheres[i].center);
+  return sphere;
+}
+
+/// Primitives at a time, for traversal.
+struct MovingPrimitives {
+  const Primitives& all;
+  const Motion& motion;
+  float time;
+};
+
+PT_HD float primitive_distance(const MovingPrimitives& primitives, std::uint32_t i,
+                               const Ray& ray) {
+  const Primitives& all = primitives.all;
+  if (!all.is_sphere(i)) return quad_distance(all.quad(i), ray);
+  return sphere_distance(sphere_at(all, i, primitives.motion, primitives.time), ray);
 }
 
 PT_HD SurfacePoint surface_point(const Primitives& primitives, const Ray& ray, const Hit& hit) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "common/geometry/ray.h"
+#include "common/math/transform.h"
 #include "common/math/vec.h"
 
 namespace pt {
@@ -65,6 +66,10 @@ struct alignas(16) SphereFrame {
     return {dot(normal, x), dot(normal, y), dot(normal, z)};
   }
   PT_HD Vec3 world(const Vec3& v) const { return weighted_sum(v, x, y, z); }
+  /// By a map that keeps angles.
+  PT_HD void turn(const Affine& map) {
+    x = normalize(map.vector(x)), y = normalize(map.vector(y)), z = normalize(map.vector(z));
+  }
 };
 
 /// The distance of a local point from the axis z.

@@ -49,6 +49,7 @@ struct Media {
   const Medium* list = nullptr;
   const MediumBoundary* boundaries = nullptr;  ///< [material]
   bool overlap = false;                        ///< the medium at a point is a set
+  bool are_present = true;                     ///< false: boundaries and panes are not, either
 
   /// `medium_id` is not no_medium.
   PT_HD const Medium* at(std::uint32_t medium_id) const {

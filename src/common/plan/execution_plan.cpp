@@ -304,6 +304,7 @@ class Planner {
       if (takes_wide_tree()) return {Accel::cwbvh, "persistent warps make the most of it"};
       return {Accel::bvh2, alone};
     }
+    if (scene_.has_motion && scene_.has_masked_kernels()) return {Accel::bvh2, alone};
     const bool masks_in_blocks = plan_.mode == Mode::wavefront && scene_.instances == 0;
     const bool is_plain = !scene_.has_masks && !scene_.has_media;
     if (device_.has_avx2 && (is_plain || masks_in_blocks))

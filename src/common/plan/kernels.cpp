@@ -150,13 +150,11 @@ using Cells = std::array<std::string, 9>;
 
 Cells cells_of(const KernelRow& row) {
   std::string scene = geometry_names[static_cast<int>(row.geometry)];
-  if (row.extras == Extras::with_motion) {
-    scene += ", motion";
-  } else {
-    if (row.extras >= Extras::with_masks) scene += ", masks";
-    if (row.extras >= Extras::with_media) scene += ", media";
-    if (row.extras == Extras::with_sparse) scene += ", sparse grids";
-  }
+  const SceneTraits traits = traits_of(row.extras);
+  if (traits.has_motion) scene += ", motion";
+  if (traits.has_masks) scene += ", masks";
+  if (traits.has_media) scene += ", media";
+  if (traits.has_sparse) scene += ", sparse grids";
   const std::string without = names_of(row.without, std::size(content_names), [](Content c) {
     return content_names[static_cast<int>(c)];
   });

@@ -70,9 +70,20 @@ constexpr EnumSet<ExtraRecords> if_built(EnumSet<ExtraRecords> records) {
   return has_carrying_kernels ? records : EnumSet<ExtraRecords>();
 }
 
-/// What a kernel knows of a scene besides its geometry; each has all of those before. A CPU's
-/// kernels with media know sparse grids, too. Those with motion have none of the others.
-enum class Extras { plain, with_masks, with_media, with_sparse, with_motion };
+/// What a kernel knows of a scene besides its geometry; the first four have all of those before,
+/// and the last motion, masks and media. A CPU's kernels with media know sparse grids, too.
+enum class Extras { plain, with_masks, with_media, with_sparse, with_motion, with_moving_media };
+inline constexpr int extras_count = 6;
+
+constexpr SceneTraits traits_of(Extras extras) {
+  using enum Extras;
+  SceneTraits traits;
+  traits.has_motion = extras >= with_motion;
+  traits.has_masks = extras >= with_masks && extras != with_motion;
+  traits.has_media = extras >= with_media && extras != with_motion;
+  traits.has_sparse = extras == with_sparse;
+  return traits;
+}
 
 /// What some kernels cannot have in a scene although its SceneTraits allow it.
 enum class Content { spheres, instances, open_boundaries, deforming };
@@ -126,12 +137,15 @@ inline constexpr KernelRow table[] = {
     {cpu,  {serial, loop, stages, fused}, {bvh2, cwbvh, brute}, mixed, full, with_media, sampler},
     {cpu,  {serial, loop, stages, fused}, {bvh2, brute}, mixed, full, with_motion, sampler},
     {cpu,  {serial, loop, stages, fused}, {cwbvh, cwbvh_avx2}, mixed, full, with_motion, sampler, deforming},
+    {cpu,  {serial, loop, stages, fused}, {bvh2, brute}, mixed, full, with_moving_media, sampler},
+    {cpu,  {serial, loop, stages, fused}, cwbvh, mixed, full, with_moving_media, sampler, deforming},
     {cuda, {loop, stages, fused}, trees, triangles, full, plain, sampler},
     {cuda, {loop, stages}, bvh2, mixed, full, plain, sampler},
     {cuda, {loop, stages}, bvh2, mixed, full, with_masks, sampler},
     {cuda, {loop, stages, fused}, bvh2, mixed, full, with_media, sampler},
     {cuda, {loop, stages, fused}, bvh2, mixed, full, with_sparse, sampler},
     {cuda, {loop, stages, fused}, bvh2, mixed, full, with_motion, sampler},
+    {cuda, {loop, stages, fused}, bvh2, mixed, full, with_moving_media, sampler},
     {cuda, fused, trees, mixed, full, plain, sampler},
     {cuda, fused, trees, mixed, full, with_masks, sampler},
     {cuda, {vote, blocks, warps}, cwbvh, triangles, full, plain, sampler},
@@ -164,11 +178,9 @@ struct KernelNeed {
 };
 
 constexpr bool is_of_scene(const KernelRow& row, const SceneTraits& scene) {
-  const bool moves = row.extras == Extras::with_motion;
-  return row.geometry == scene.geometry && row.lighting.contains(scene.lighting) &&
-         (row.extras >= Extras::with_masks && !moves) == scene.has_masks &&
-         (row.extras >= Extras::with_media && !moves) == scene.has_media &&
-         (row.extras == Extras::with_sparse) == scene.has_sparse && moves == scene.has_motion;
+  SceneTraits traits = traits_of(row.extras);
+  traits.accel = scene.accel, traits.geometry = row.geometry, traits.lighting = scene.lighting;
+  return traits == scene && row.lighting.contains(scene.lighting);
 }
 
 constexpr bool serves(const KernelRow& row, const KernelNeed& need) {
@@ -204,9 +216,12 @@ constexpr SceneTraits general_traits(Accel accel, EnumSet<Content> contents, boo
   const bool mixed = has_masks || has_media || has_motion || accel == Accel::brute ||
                      accel == Accel::embree ||
                      contents.intersects({Content::spheres, Content::instances});
-  return {accel,          mixed ? Geometry::mixed : Geometry::triangles,
-          Lighting::full, has_masks || has_media,
-          has_media,      has_sparse,
+  return {accel,
+          mixed ? Geometry::mixed : Geometry::triangles,
+          Lighting::full,
+          has_masks || has_media,
+          has_media || (has_masks && has_motion),
+          has_sparse,
           has_motion};
 }
 

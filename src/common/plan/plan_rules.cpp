@@ -263,11 +263,11 @@ std::string motion_obstacle(const Options& o, const SceneProperties& scene, bool
         to_string(o.builder));
   if (o.integrator == IntegratorKind::mlt)
     return "--integrator mlt knows no motion blur; expected --integrator path";
-  if (scene.has_media)
-    return "motion blur knows no media and no thin glass; expected a scene without them";
-  if (scene.has_masks)
-    return "motion blur knows no masks, far planes or hidden emitters; expected a scene without "
-           "them";
+  if (scene.has_moving_grids)
+    return "a grid of a medium does not move with the medium's boundary; expected a homogeneous "
+           "medium, or a boundary that stands";
+  if (on_cuda && scene.has_sparse)
+    return "on CUDA motion blur knows no sparse grids; expected --volume dense or --device cpu";
   if (scene.has_deforming_emitters)
     return "meshes that deform cannot emit; expected meshes that emit in instances that move";
   if (scene.has_moving_emitters && o.light_selection == LightSelection::tree)

@@ -38,7 +38,7 @@ void throw_no_kernel(const SceneTraits& traits) {
       "no kernel for a scene with --accel {}, geometry: {}, lights: {}{}; expected a row of "
       "--list-kernels",
       accel_name(traits.accel), name_of(traits.geometry), name_of(traits.lighting),
-      traits.has_motion   ? ", motion"
+      traits.has_motion   ? traits.has_media ? ", motion, masks, media" : ", motion"
       : traits.has_sparse ? ", media, sparse grids"
       : traits.has_media  ? ", media"
       : traits.has_masks  ? ", masks"

@@ -72,17 +72,14 @@ struct CpuKernels {
 
 namespace detail {
 
-inline constexpr int traits_count = accel_count * 3 * 3 * 5;
+inline constexpr int traits_count = accel_count * 3 * 3 * extras_count;
 
 /// All combinations of kernels (Extras), by number.
 constexpr SceneTraits traits_at(int i) {
-  SceneTraits traits;
+  SceneTraits traits = traits_of(Extras{i / (accel_count * 3 * 3)});
   traits.accel = Accel{i % accel_count}, i /= accel_count;
   traits.geometry = Geometry{i % 3}, i /= 3;
-  traits.lighting = Lighting{i % 3}, i /= 3;
-  traits.has_motion = i == static_cast<int>(Extras::with_motion);
-  if (traits.has_motion) return traits;
-  traits.has_masks = i > 0, traits.has_media = i > 1, traits.has_sparse = i > 2;
+  traits.lighting = Lighting{i % 3};
   return traits;
 }
 

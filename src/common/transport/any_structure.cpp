@@ -83,6 +83,7 @@ bool any_triangle_any(const Scene& scene, const Ray& ray, float t_max, std::uint
 PT_ANY(false, false)
 PT_ANY(true, false)
 PT_ANY(false, true)
+PT_ANY(true, true)
 #undef PT_ANY
 
 template <class Shading>
@@ -101,6 +102,7 @@ PT_ANY(Geometry::triangles, false, true)
 PT_ANY(Geometry::mixed, false)
 PT_ANY(Geometry::mixed, false, true)
 PT_ANY(Geometry::mixed, false, false, false, true)
+PT_ANY(Geometry::mixed, false, true, false, true)
 #undef PT_ANY
 
 }  // namespace pt

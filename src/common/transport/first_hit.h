@@ -100,13 +100,13 @@ struct ViewThroughMedia {
 
 template <class Traits>
 PT_HD ViewThroughMedia look_through_media(const Scene& scene, const Ray& camera_ray,
-                                          std::uint32_t path_key) {
+                                          std::uint32_t path_key, float time = 0.0f) {
   ViewThroughMedia view;
   view.ray = camera_ray;
   PathState path;  // the flights of the path itself: their keys are the same
   for (;; ++path.rays) {
     const std::uint32_t ray_key = next_ray_key(scene, path_key, path.rays);
-    view.hit = intersect_closest<Traits>(scene, view.ray, ray_key);
+    view.hit = intersect_closest<Traits>(scene, view.ray, ray_key, time);
     Hit end = view.hit;
     FreeFlight flight;
     travel<Traits::has_sparse>(scene, view.ray, path_key, to_the_end, path, flight, end);
@@ -123,7 +123,7 @@ PT_HD ViewThroughMedia look_through_media(const Scene& scene, const Ray& camera_
     const std::uint32_t index = material_index_at(scene, view.hit);
     const Material material = scene.material(index);
     if (!lets_through(scene, material, index, path.medium.id) || is_pane(material)) return view;
-    const Surface surface = surface_at<ShadingTraits<Traits>>(scene, view.ray, view.hit);
+    const Surface surface = surface_at<ShadingTraits<Traits>>(scene, view.ray, view.hit, time);
     const BoundaryCrossing crossing = cross_boundary(scene, view.ray, surface, path.medium.id);
     path.medium.id = crossing.medium_id;
     view.distance += crossing.length;
@@ -149,11 +149,32 @@ PT_HD Vec2 motion_of(const Scene& scene, const Ray& ray, const Hit& hit, const V
       return placed ? to_world_at<Traits>(scene, instance.index, then).point(p) : p;
     };
     begin = place_at(0.0f), end = place_at(1.0f);
+  } else if (const Motion& motion = *scene.motion; moves(motion, hit.primitive)) {
+    const Vec3 own = inverse(sphere_pose(motion, hit.primitive, time)).point(position);
+    begin = sphere_pose(motion, hit.primitive, 0.0f).point(own);
+    end = sphere_pose(motion, hit.primitive, 1.0f).point(own);
   }
   Vec2 from, to;
   const bool is_seen = film_position(camera_at(scene, 0.0f), begin, from) &&
                        film_position(camera_at(scene, 1.0f), end, to);
   return is_seen ? to - from : Vec2(0.0f);
+}
+
+/// What the camera sees at a time, from the camera on.
+template <class Traits>
+PT_HD ViewThroughMedia view_at(const Scene& scene, const PathId& id, const Vec4& u, float time) {
+  const Camera camera = camera_at(scene, time);
+  ViewThroughMedia view;
+  view.ray = generate_camera_path(scene, camera, id.pixel, u);
+  const float near_plane = camera.distance_of_near_plane(view.ray.direction);
+  const std::uint32_t key = path_hash<Traits>(scene, id);
+  if constexpr (Traits::has_media) {
+    view = look_through_media<Traits>(scene, view.ray, key, time);
+  } else {
+    view.hit = intersect_closest<Traits>(scene, view.ray, key, time);
+  }
+  view.distance += near_plane, view.collision += near_plane;
+  return view;
 }
 
 /// The first hit of the camera ray that the path `id` has.
@@ -166,18 +187,15 @@ PT_HD FirstHit first_hit_of_path(const Scene& scene, const Source& source, const
   PathState path;
   set_time<Traits>(scene, id, path);
   if constexpr (Traits::has_motion) {
-    const Ray ray = generate_camera_path(scene, camera_at(scene, path.time), id.pixel, u);
-    const Hit hit = intersect_closest<Traits>(scene, ray, 0, path.time);
-    FirstHit first =
-        first_hit<ShadingTraits<Traits>>(scene, ray, hit, random.draw(scatter_block(1)), path.time);
-    if (!hit.is_miss())
-      first.motion = motion_of<Traits>(scene, ray, hit, first.position, path.time);
-    const Camera middle = camera_at(scene, 0.5f);
-    const Ray middle_ray = generate_camera_path(scene, middle, id.pixel, u);
-    const Hit seen = intersect_closest<Traits>(scene, middle_ray, 0, 0.5f);
-    first.distance =
-        seen.is_miss() ? 0.0f : seen.t + middle.distance_of_near_plane(middle_ray.direction);
-    first.collision = first.distance;
+    const ViewThroughMedia own = view_at<Traits>(scene, id, u, path.time);
+    FirstHit first = first_hit<ShadingTraits<Traits>>(scene, own.ray, own.hit,
+                                                      random.draw(scatter_block(1)), path.time);
+    if (!own.hit.is_miss())
+      first.motion = motion_of<Traits>(scene, own.ray, own.hit, first.position, path.time);
+    first.transmittance = own.transmittance;
+    const ViewThroughMedia middle = view_at<Traits>(scene, id, u, 0.5f);
+    first.distance = middle.hit.is_miss() ? 0.0f : middle.distance + middle.hit.t;
+    first.collision = middle.collides ? middle.collision : first.distance;
     return first;
   }
   Ray ray = generate_camera_path(scene, id.pixel, u);

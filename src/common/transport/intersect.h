@@ -17,10 +17,22 @@ struct ShadowRay {
   std::uint16_t medium_id = no_medium;  ///< where it begins (Media), in scenes with media
 };
 
+/// The spheres and quads, at a time where they move.
+template <bool has_motion>
+PT_HD decltype(auto) primitives_at(const Scene& scene, float time) {
+  if constexpr (has_motion) {
+    return MovingPrimitives{scene.primitives, *scene.motion, time};
+  } else {
+    return (scene.primitives);
+  }
+}
+
 /// Spheres and quads, in a scene that has nothing else or besides its triangles.
 template <class Traits>
-PT_HD Hit closest_primitive(const Scene& scene, const Ray& ray) {
-  if constexpr (Traits::geometry == Geometry::mixed || Traits::accel == Accel::bvh2) {
+PT_HD Hit closest_primitive(const Scene& scene, const Ray& ray, float time = 0.0f) {
+  if constexpr (Traits::has_motion) {
+    return closest_hit_bvh2(scene.bvh_nodes, primitives_at<true>(scene, time), ray);
+  } else if constexpr (Traits::geometry == Geometry::mixed || Traits::accel == Accel::bvh2) {
     return closest_hit_bvh2(scene.bvh_nodes, scene.primitives, ray);
   } else {
     return closest_hit_brute(scene.primitives, ray);
@@ -28,8 +40,10 @@ PT_HD Hit closest_primitive(const Scene& scene, const Ray& ray) {
 }
 
 template <class Traits>
-PT_HD bool any_primitive(const Scene& scene, const Ray& ray, float distance) {
-  if constexpr (Traits::geometry == Geometry::mixed || Traits::accel == Accel::bvh2) {
+PT_HD bool any_primitive(const Scene& scene, const Ray& ray, float distance, float time = 0.0f) {
+  if constexpr (Traits::has_motion) {
+    return any_hit_bvh2(scene.bvh_nodes, primitives_at<true>(scene, time), ray, distance);
+  } else if constexpr (Traits::geometry == Geometry::mixed || Traits::accel == Accel::bvh2) {
     return any_hit_bvh2(scene.bvh_nodes, scene.primitives, ray, distance);
   } else {
     return any_hit_brute(scene.primitives, ray, distance);
@@ -37,11 +51,13 @@ PT_HD bool any_primitive(const Scene& scene, const Ray& ray, float distance) {
 }
 
 /// In a scene with masks: within the view, for a camera ray.
-PT_HD Hit closest_primitive_in_view(const Scene& scene, const Ray& ray, std::uint32_t ray_key) {
+template <bool has_motion = false>
+PT_HD Hit closest_primitive_in_view(const Scene& scene, const Ray& ray, std::uint32_t ray_key,
+                                    float time = 0.0f) {
   const bool is_limited = is_limited_camera_ray(scene, ray_key);
   Hit hit;
-  hit.t = ray_length(scene, ray.direction, ray_key);
-  traverse_bvh2(scene.bvh_nodes, scene.primitives, ray, hit.t,
+  hit.t = ray_length<has_motion>(scene, ray.direction, ray_key, time);
+  traverse_bvh2(scene.bvh_nodes, primitives_at<has_motion>(scene, time), ray, hit.t,
                 [&](float t, std::uint32_t primitive, float& t_max) {
                   const bool hidden =
                       is_limited &&
@@ -69,6 +85,11 @@ PT_HD Hit closest_triangle(const Scene& scene, const Ray& ray, float t_max, std:
   if constexpr (Traits::accel == Accel::any) {
     return closest_triangle_any<Traits::has_masks, Traits::has_motion>(scene, ray, t_max, ray_key,
                                                                        time);
+  } else if constexpr (Traits::has_motion && Traits::has_masks) {
+    MaskedQuery<MovingQuery<ClosestTriangle>, MaskTest> query(0.0f, t_max, MaskTest{scene, ray_key},
+                                                              *scene.motion, time);
+    traverse_triangles<Traits::accel, Traits::has_instances>(scene.triangles, ray, query);
+    return query.result();
   } else if constexpr (Traits::has_motion) {
     MovingQuery<ClosestTriangle> query(0.0f, t_max, *scene.motion, time);
     traverse_triangles<Traits::accel, Traits::has_instances>(scene.triangles, ray, query);
@@ -89,6 +110,11 @@ PT_HD bool any_triangle(const Scene& scene, const Ray& ray, float t_max, std::ui
   if constexpr (Traits::accel == Accel::any) {
     return any_triangle_any<Traits::has_masks, Traits::has_motion>(scene, ray, t_max, ray_key,
                                                                    time);
+  } else if constexpr (Traits::has_motion && Traits::has_masks) {
+    MaskedQuery<MovingQuery<AnyTriangle>, MaskTest> query(0.0f, t_max, MaskTest{scene, ray_key},
+                                                          *scene.motion, time);
+    traverse_triangles<Traits::accel, Traits::has_instances>(scene.triangles, ray, query);
+    return query.result();
   } else if constexpr (Traits::has_motion) {
     MovingQuery<AnyTriangle> query(0.0f, t_max, *scene.motion, time);
     traverse_triangles<Traits::accel, Traits::has_instances>(scene.triangles, ray, query);
@@ -125,10 +151,13 @@ PT_HD Hit intersect_closest(const Scene& scene, const Ray& ray, std::uint32_t ra
     Hit nearest;
     float t_max = nearest.t;
     if constexpr (Traits::has_masks) {
-      if (scene.primitives.count() > 0) nearest = closest_primitive_in_view(scene, ray, ray_key);
-      t_max = nearest.is_miss() ? ray_length(scene, ray.direction, ray_key) : nearest.t;
+      constexpr bool has_motion = Traits::has_motion;
+      if (scene.primitives.count() > 0)
+        nearest = closest_primitive_in_view<has_motion>(scene, ray, ray_key, time);
+      t_max = nearest.is_miss() ? ray_length<has_motion>(scene, ray.direction, ray_key, time)
+                                : nearest.t;
     } else if (Traits::geometry == Geometry::mixed && scene.primitives.count() > 0) {
-      nearest = closest_primitive<Traits>(scene, ray);
+      nearest = closest_primitive<Traits>(scene, ray, time);
       t_max = nearest.t;
     }
     Hit hit = closest_triangle<Traits>(scene, ray, t_max, ray_key, time);
@@ -149,7 +178,7 @@ PT_HD bool intersect_shadow(const Scene& scene, const ShadowRay& shadow, std::ui
     return any_primitive<Traits>(scene, shadow.ray, shadow.distance);
   } else {
     if (Traits::geometry == Geometry::mixed && scene.primitives.count() > 0 &&
-        any_primitive<Traits>(scene, shadow.ray, shadow.distance)) {
+        any_primitive<Traits>(scene, shadow.ray, shadow.distance, time)) {
       return true;
     }
     return any_triangle<Traits>(scene, shadow.ray, shadow.distance, ray_key, time);

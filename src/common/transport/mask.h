@@ -10,6 +10,7 @@
 #include "common/sampling/random.h"
 #include "common/scene/data/scene.h"
 #include "common/texture/sample_texture.h"
+#include "common/transport/shutter_time.h"
 
 namespace pt {
 
@@ -43,9 +44,13 @@ PT_HD bool is_limited_camera_ray(const SceneOrMasks& scene, std::uint32_t ray_ke
   return scene.camera.is_limited && (ray_key & 1u) != 0;
 }
 
-/// How far along the path's next ray a hit may lie: for camera rays up to the far plane.
-PT_HD float ray_length(const Scene& scene, const Vec3& direction, std::uint32_t ray_key) {
+/// How far along the path's next ray a hit may lie: for camera rays up to the far plane, which
+/// moves with the camera.
+template <bool has_motion = false>
+PT_HD float ray_length(const Scene& scene, const Vec3& direction, std::uint32_t ray_key,
+                       float time = 0.0f) {
   if (!is_limited_camera_ray(scene, ray_key)) return infinite_distance;
+  if constexpr (has_motion) return camera_at(scene, time).distance_in_view(direction);
   return scene.camera.distance_in_view(direction);
 }
 

@@ -130,7 +130,7 @@ struct PathRegisters {
   PT_HD void cast(const PathState& path, const ShadowRay& shadow) {
     const std::uint32_t key = shadow_ray_key(scene, path_key(), path.rays);
     if constexpr (Traits::has_media) {
-      const Color transmittance = shadow_transmittance<Traits>(scene, shadow, key);
+      const Color transmittance = shadow_transmittance<Traits>(scene, shadow, key, path.time);
       radiance = add_rounded(radiance, multiply_rounded(shadow.radiance, transmittance));
       return;
     }

@@ -54,13 +54,19 @@ PT_HD IncidentLight sample_listed_light(const Scene& scene, const Light& light, 
   return incident;
 }
 
-/// A light of the list; where it moves, a triangle, as it lies at `time`.
+/// A light of the list; where it moves, a triangle or a sphere, as it lies at `time`.
 template <bool has_motion>
 PT_HD Light light_at(const Scene& scene, std::uint32_t index, float time) {
   const Light light = load_wide(&scene.light_selector.lights[index]);
   if constexpr (has_motion) {
     const std::uint32_t instance = scene.motion->instance_of(index);
     if (instance != Motion::none) {
+      if (instance >= Motion::of_sphere) {
+        auto sphere = light.as<SphereLight>();
+        const std::uint32_t i = instance & ~Motion::of_sphere;
+        sphere.center = sphere_at(scene.primitives, i, *scene.motion, time).center;
+        return Light::of(sphere);
+      }
       auto triangle = light.as<TriangleLight>();
       const Affine to_world = scene.motion->to_world(instance, time);
       triangle.vertex = to_world.point(triangle.vertex);
@@ -111,7 +117,9 @@ PT_HD float light_pdf(const Scene& scene, const Ray& ray, Receiver receiver, con
   } else {
     const LightSelector& selector = scene.light_selector;
     if (hit.primitive < scene.primitives.count()) {
-      const Sphere sphere = load_wide(&scene.primitives.spheres[hit.primitive]);
+      Sphere sphere = load_wide(&scene.primitives.spheres[hit.primitive]);
+      if constexpr (Traits::has_motion)
+        sphere = sphere_at(scene.primitives, hit.primitive, *scene.motion, time);
       return selector.pmf(ray.origin, receiver, scene.light_map.spheres[hit.primitive]) *
              sphere_solid_angle_pdf(sphere, ray.origin);
     }

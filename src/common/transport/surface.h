@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/accel/triangle_query.h"
+#include "common/geometry/primitives.h"
 #include "common/scene/data/scene.h"
 #include "common/texture/sample_texture.h"
 #include "common/transport/path.h"
@@ -220,12 +221,7 @@ PT_HD std::uint32_t material_index_at(const Scene& scene, const Hit& hit) {
              : scene.triangles.triangles[hit.primitive - primitives].material;
 }
 
-/// A sphere in a scene of which some have a frame. Not inlined, since few scenes have any; and
-/// called with values alone: the scene, a kernel's parameter, would be handed on in local memory,
-/// which gives the kernel that shades all scenes with instances 800 bytes of stack instead of 72.
-PT_NOINLINE inline Surface framed_sphere(const SphereFrame* its_frame, float radius,
-                                         Surface surface) {
-  const SphereFrame frame = load_wide(its_frame);
+PT_HD Surface in_frame(const SphereFrame& frame, float radius, Surface surface) {
   const Vec3 local = frame.local(surface.point.normal);
   if (surface.material.is(Material::textured)) surface.uv = sphere_uv(local);
   if (surface.material.is(Material::tangents)) {
@@ -236,6 +232,22 @@ PT_NOINLINE inline Surface framed_sphere(const SphereFrame* its_frame, float rad
   return surface;
 }
 
+/// A sphere in a scene of which some have a frame. Not inlined, since few scenes have any; and
+/// called with values alone: the scene, a kernel's parameter, would be handed on in local memory,
+/// which gives the kernel that shades all scenes with instances 800 bytes of stack instead of 72.
+PT_NOINLINE inline Surface framed_sphere(const SphereFrame* its_frame, float radius,
+                                         Surface surface) {
+  return in_frame(load_wide(its_frame), radius, surface);
+}
+/// `motion` is that of a scene whose sphere `i` moves; its frame is in its own space.
+PT_NOINLINE inline Surface moving_framed_sphere(const SphereFrame* its_frame, float radius,
+                                                Surface surface, const Motion* motion,
+                                                std::uint32_t i, float time) {
+  SphereFrame frame = load_wide(its_frame);
+  frame.turn(sphere_pose(*motion, i, time));
+  return in_frame(frame, radius, surface);
+}
+
 template <class Traits>
 PT_HD Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit, float time = 0.0f) {
   if constexpr (Traits::geometry != Geometry::spheres_and_quads) {
@@ -243,11 +255,23 @@ PT_HD Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit, flo
         Traits::geometry == Geometry::triangles || hit.primitive >= scene.primitives.count();
     if (is_triangle) return triangle_surface<Traits>(scene, ray, hit, time);
   }
-  const SurfacePoint point = surface_point(scene.primitives, ray, hit);
+  SurfacePoint point;
+  if constexpr (Traits::has_motion) {
+    point =
+        sphere_surface(sphere_at(scene.primitives, hit.primitive, *scene.motion, time), ray, hit.t);
+  } else {
+    point = surface_point(scene.primitives, ray, hit);
+  }
   const std::uint32_t material = scene.material_of[hit.primitive];
   const Surface surface = {point, point.normal, material, scene.material(material)};
   if constexpr (Traits::lighting == Lighting::full) {  // where there are no quads
     if (scene.sphere_frames != nullptr) {
+      if constexpr (Traits::has_motion) {
+        if (moves(*scene.motion, hit.primitive))
+          return moving_framed_sphere(&scene.sphere_frames[hit.primitive],
+                                      scene.primitives.spheres[hit.primitive].radius(), surface,
+                                      scene.motion, hit.primitive, time);
+      }
       return framed_sphere(&scene.sphere_frames[hit.primitive],
                            scene.primitives.spheres[hit.primitive].radius(), surface);
     }

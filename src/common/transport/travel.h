@@ -147,14 +147,18 @@ PT_HD Color segment_transmittance(const Scene& scene, std::uint16_t medium_id, c
 /// The transmittance along a shadow ray: black if a surface with a BSDF lies between its ends, else
 /// that of the media and panes through which it goes.
 template <class Traits>
-PT_HD Color shadow_transmittance(const Scene& scene, const ShadowRay& shadow,
-                                 std::uint32_t ray_key) {
+PT_HD Color shadow_transmittance(const Scene& scene, const ShadowRay& shadow, std::uint32_t ray_key,
+                                 float time = 0.0f) {
+  if constexpr (Traits::has_motion) {  // whose kernels with masks know media in any case
+    if (!scene.media.are_present)
+      return Color(intersect_shadow<Traits>(scene, shadow, ray_key, time) ? 0.0f : 1.0f);
+  }
   Color result(1.0f);
   Ray ray = shadow.ray;
   float left = shadow.distance;
   std::uint16_t medium_id = shadow.medium_id;
   for (std::uint32_t segment = 0;; ++segment) {
-    const Hit hit = intersect_closest<Traits>(scene, ray, ray_key);
+    const Hit hit = intersect_closest<Traits>(scene, ray, ray_key, time);
     const bool arrives = hit.is_miss() || !(hit.t < left);
     const std::uint32_t material = arrives ? 0 : material_index_at(scene, hit);
     if (!arrives && !lets_through(scene, scene.material(material), material, medium_id)) {
@@ -166,7 +170,7 @@ PT_HD Color shadow_transmittance(const Scene& scene, const ShadowRay& shadow,
                                             scene, medium_id, ray, length, ray_key, segment));
     }
     if (arrives || is_black(result)) return result;
-    const Surface surface = surface_at<ShadingTraits<Traits>>(scene, ray, hit);
+    const Surface surface = surface_at<ShadingTraits<Traits>>(scene, ray, hit, time);
     if (is_pane(surface.material)) {
       const float cosine = dot(ray.direction, surface.shading_normal);
       result = multiply_rounded(result, pane_at(scene, surface).transmittance(cosine));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "make_render.h"
+#include "scene/nested_scenes.h"
 
 namespace pt {
 
@@ -50,6 +51,29 @@ inline SceneData moving_room() {
         {1.0f, translate({1, 2, 1}) * rotate({1, 0.3f, 0}, 130)}}}};
   const Affine camera = translate({0, 3, 6}) * rotate({1, 0, 0}, -22.6199f);
   scene.motion.camera = {{0.0f, camera}, {1.0f, translate({0.2f, 0.1f, 0}) * camera}};
+  return scene;
+}
+
+/// The room with balls instead: one that turns about a point beside it, with a picture, a lamp that
+/// goes, and one that stands.
+inline SceneData moving_spheres() {
+  SceneData scene = moving_room();
+  scene.name = "moving spheres";
+  scene.meshes.resize(1), scene.instances.clear(), scene.motion.instances.clear();
+  const auto move = [&](const TransformKey& begin, const TransformKey& end) {
+    const auto sphere = static_cast<std::uint32_t>(scene.spheres.size() - 1);
+    scene.motion.spheres.push_back({sphere, {begin, end}});
+  };
+  scene.add_sphere({-1.5f, 0.5f, 0}, 0.5f, 0);
+  std::vector<Color> stripes;
+  for (int i = 0; i < 8; ++i) stripes.emplace_back(i % 2 == 0 ? 0.9f : 0.1f);
+  MaterialDescription striped = make_diffuse(Color(1.0f));
+  striped.parameters[0].texture = add_picture(scene, 8, 1, stripes);
+  const Affine stand = translate({0.5f, 0.6f, 0.5f});
+  scene.add_sphere(stand.point({0.6f, 0, 0}), 0.4f, scene.add_material(striped), SphereFrame());
+  move({0.0f, stand}, {1.0f, stand * rotate({0, 1, 0.3f}, 140)});
+  scene.add_sphere({-1, 2, 0}, 0.25f, 1);
+  move({0.0f, translate({-1, 2, 0})}, {0.8f, translate({1, 1.6f, 0.5f})});
   return scene;
 }
 

@@ -33,6 +33,7 @@ struct Shutter {
 /// What the host's kernels read; `view` points to the rest, so it is never copied.
 struct PreparedMotion {
   MotionTracks tracks;
+  std::vector<SphereTrack> spheres;            ///< see Motion
   std::vector<std::uint32_t> light_instances;  ///< see Motion
   std::vector<Triangle> end_triangles;
   std::vector<CornerAttributes> end_corners;
@@ -48,6 +49,7 @@ struct PreparedMotion {
   void for_each_array(Motion& motion, Function&& function) const {
     function(motion.segments, tracks.segments);
     function(motion.instances, tracks.instances);
+    function(motion.spheres, spheres);
     function(motion.light_instances, light_instances);
     function(motion.end_triangles, end_triangles);
     function(motion.end_corners, end_corners);
@@ -70,6 +72,15 @@ struct MotionData {
     std::uint32_t instance = 0;
     std::vector<TransformKey> keys;
   };
+  struct MovingSphere {
+    std::uint32_t sphere = 0;
+    std::vector<TransformKey> keys;
+
+    /// The centre in the space of the keys, of a sphere where it is at the first one.
+    Vec3 own_center(const Vec3& center) const {
+      return inverse(keys.front().to_world).point(center);
+    }
+  };
 
   Shutter shutter;
   std::vector<TransformKey> camera;  ///< poses of the camera's space, which the first key's pose
@@ -77,9 +88,11 @@ struct MotionData {
                                      ///< have it look along z, with x to the left and y up; empty:
                                      ///< it stands
   std::vector<MovingInstance> instances;     ///< whose Instance::to_world is then the first key's
+  std::vector<MovingSphere> spheres;         ///< which then are where the first key has them; keys
+                                             ///< turn and move
   std::shared_ptr<PreparedMotion> prepared;  ///< of the above, by prepare_motion(); null: it stands
 
-  bool moves() const { return !camera.empty() || !instances.empty(); }
+  bool moves() const { return !camera.empty() || !instances.empty() || !spheres.empty(); }
   const MotionTracks& tracks() const {
     static const MotionTracks none;
     return prepared ? prepared->tracks : none;

@@ -81,7 +81,7 @@ struct Traits {
   static constexpr bool has_masks = has_masks_value;    ///< triangles that are there in part
   static constexpr bool has_media = has_media_value;    ///< between surfaces; with has_masks alone
   static constexpr bool has_sparse = has_sparse_value;  ///< see sample_grid(); with has_media alone
-  static constexpr bool has_motion = has_motion_value;  ///< paths have a time; alone
+  static constexpr bool has_motion = has_motion_value;  ///< paths have a time
   static constexpr bool has_lights = lighting != Lighting::sky;
   static constexpr bool has_instances = geometry == Geometry::mixed;
   /// The BSDFs that a kernel shades.
@@ -106,8 +106,8 @@ using SharedShadingTraits =
 
 /// The same at collisions in media, where grids are looked up.
 template <class T>
-using CollisionTraits =
-    Traits<Accel::brute, T::geometry, T::lighting, false, T::has_media, T::has_sparse>;
+using CollisionTraits = Traits<Accel::brute, T::geometry, T::lighting, false, T::has_media,
+                               T::has_sparse, T::has_motion>;
 
 /// As ShadingTraits of scenes that have triangles and nothing else.
 template <class T>

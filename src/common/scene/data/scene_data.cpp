@@ -133,6 +133,23 @@ class Framing {
 
 }  // namespace
 
+Bounds moving_sphere_bounds(const SceneData& scene, std::size_t i) {
+  const MotionData::MovingSphere& moving = scene.motion.spheres[i];
+  const MotionTracks& motion = scene.motion.tracks();
+  const Sphere& sphere = scene.spheres[moving.sphere];
+  const Vec3 own = moving.own_center(sphere.center), radius(sphere.radius());
+  Bounds bounds = sphere_bounds(sphere);
+  const double deviation =
+      sample_poses(motion.segments, motion.spheres[i], [&](const Affine& to_world) {
+        bounds.grow(to_world.point(own) - radius), bounds.grow(to_world.point(own) + radius);
+      });
+  // As boxes of instances that move.
+  const float size = std::max(max_abs(bounds.min), max_abs(bounds.max)) + max_abs(own);
+  const auto farthest = double{glm::length(own)};
+  const float margin = static_cast<float>(1.001 * deviation * farthest) + 32.0f * half_ulp * size;
+  return {bounds.min - Vec3(margin), bounds.max + Vec3(margin)};
+}
+
 Bounds scene_bounds(const SceneData& scene) {
   std::map<std::uint32_t, Bounds> groups;
   for (const Mesh& mesh : scene.meshes) {
@@ -149,6 +166,7 @@ Bounds scene_bounds(const SceneData& scene) {
                  [&](const Affine& to_world) { all.grow(transformed(group, to_world)); });
   }
   for (const Sphere& s : scene.spheres) all.grow(sphere_bounds(s));
+  for (std::size_t i = 0; i < motion.spheres.size(); ++i) all.grow(moving_sphere_bounds(scene, i));
   for (const Quad& q : scene.quads) all.grow(quad_bounds(q));
   return all;
 }

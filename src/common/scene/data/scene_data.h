@@ -154,6 +154,9 @@ struct SceneData {
   void add_quad(const Vec3& corner, const Vec3& a, const Vec3& b, std::uint32_t material);
 };
 
+/// The box of what motion.spheres[i] moves, while the shutter is open.
+Bounds moving_sphere_bounds(const SceneData& scene, std::size_t i);
+
 /// The bounds of everything in world space. Those of instances may be too large: they are the
 /// transformed boxes of their groups. Of those that move: at some of their poses.
 Bounds scene_bounds(const SceneData& scene);

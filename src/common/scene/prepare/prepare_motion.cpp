@@ -76,6 +76,16 @@ MotionSegment make_segment(const Decomposed& from, Decomposed to, double begin, 
   return segment;
 }
 
+/// A sphere stays one of the same radius if its keys have the same scale in all directions.
+void check_rigid(const std::vector<TransformKey>& keys, const std::string& what) {
+  const double scale = decompose(keys.front().to_world).stretch[0][0];
+  for (const TransformKey& key : keys) {
+    const DMat3 rest = decompose(key.to_world).stretch - DMat3(scale);
+    if (!(size_of(rest) <= 1e-3 * std::abs(scale)))
+      throw Error(what + " is scaled while it moves; expected poses that turn and move");
+  }
+}
+
 MotionTrack add_track(const std::vector<TransformKey>& keys, const Shutter& shutter,
                       const std::string& what, MotionTracks& tracks) {
   check_keys(keys, what);
@@ -115,12 +125,34 @@ void prepare_motion(SceneData& scene) {
     tracks.instances[moving.instance] =
         add_track(moving.keys, shutter, fmt::format("instance {}", moving.instance), tracks);
   }
+  for (const MotionData::MovingSphere& moving : motion.spheres) {
+    const std::string what = fmt::format("sphere {}", moving.sphere);
+    if (moving.sphere >= scene.spheres.size())
+      throw Error(
+          fmt::format("scene '{}': {} moves, of {}", scene.name, what, scene.spheres.size()));
+    tracks.spheres.push_back(add_track(moving.keys, shutter, what, tracks));
+    check_rigid(moving.keys, what);
+  }
   if (!motion.camera.empty()) {
     tracks.camera = add_track(motion.camera, shutter, "the camera", tracks);
     view.to_camera = inverse(motion.camera.front().to_world);
   }
   view.camera = tracks.camera;
   motion.prepared->update_view();
+}
+
+void prepare_moving_spheres(SceneData& scene) {
+  if (scene.motion.spheres.empty()) return;
+  PreparedMotion& motion = *scene.motion.prepared;
+  motion.spheres.assign(scene.spheres.size(), {});
+  for (std::size_t i = 0; i < scene.motion.spheres.size(); ++i) {
+    const MotionData::MovingSphere& moving = scene.motion.spheres[i];
+    motion.spheres[moving.sphere] = {moving.own_center(scene.spheres[moving.sphere].center),
+                                     motion.tracks.spheres[i]};
+    if (!scene.sphere_frames.empty())
+      scene.sphere_frames[moving.sphere].turn(inverse(moving.keys.front().to_world));
+  }
+  motion.update_view();
 }
 
 void hold_still_at(SceneData& scene, float time) {
@@ -131,6 +163,14 @@ void hold_still_at(SceneData& scene, float time) {
   const float part = std::clamp((time - shutter.open) / (shutter.close - shutter.open), 0.0f, 1.0f);
   for (const MotionData::MovingInstance& moving : scene.motion.instances)
     scene.instances[moving.instance].to_world = motion.to_world(moving.instance, part);
+  for (std::size_t i = 0; i < scene.motion.spheres.size(); ++i) {
+    const MotionData::MovingSphere& moving = scene.motion.spheres[i];
+    const Affine way = pose_at(motion.segments, scene.motion.tracks().spheres[i], part) *
+                       inverse(moving.keys.front().to_world);
+    Vec3& center = scene.spheres[moving.sphere].center;
+    center = way.point(center);
+    if (!scene.sphere_frames.empty()) scene.sphere_frames[moving.sphere].turn(way);
+  }
   if (motion.camera.moves()) {
     const Affine way = pose_at(motion.segments, motion.camera, part) * motion.to_camera;
     CameraParameters& camera = scene.camera;
@@ -159,6 +199,15 @@ void prepare_moving_lights(SceneData& scene) {
     if (motion.light_instances.size() < end) motion.light_instances.resize(end, Motion::none);
     for (std::uint32_t light = first[moving.instance]; light < end; ++light)
       motion.light_instances[light] = moving.instance;
+  }
+  const std::vector<std::uint32_t>& of_spheres = scene.light_list.spheres;
+  for (const MotionData::MovingSphere& moving : scene.motion.spheres) {
+    if (scene.material_records[scene.sphere_material[moving.sphere]].emission == no_emission)
+      continue;
+    const std::uint32_t light = of_spheres[moving.sphere];
+    if (motion.light_instances.size() <= light)
+      motion.light_instances.resize(light + 1, Motion::none);
+    motion.light_instances[light] = moving.sphere | Motion::of_sphere;
   }
   motion.update_view();
 }

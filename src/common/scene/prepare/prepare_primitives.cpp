@@ -14,6 +14,8 @@ std::vector<Bounds> primitive_bounds(const SceneData& scene) {
   std::vector<Bounds> bounds;
   bounds.reserve(scene.primitive_count());
   for (const Sphere& s : scene.spheres) bounds.push_back(sphere_bounds(s));
+  for (std::size_t i = 0; i < scene.motion.spheres.size(); ++i)
+    bounds[scene.motion.spheres[i].sphere] = moving_sphere_bounds(scene, i);
   for (const Quad& q : scene.quads) bounds.push_back(quad_bounds(q));
   return bounds;
 }
@@ -45,6 +47,9 @@ void build_structure(SceneData& scene, const Bounds& others) {
   if (!scene.sphere_frames.empty()) {
     scene.sphere_frames = permuted(scene.sphere_frames, sphere_order, 0);
   }
+  for (MotionData::MovingSphere& moving : scene.motion.spheres)
+    moving.sphere = static_cast<std::uint32_t>(std::ranges::find(sphere_order, moving.sphere) -
+                                               sphere_order.begin());
   scene.quads = permuted(scene.quads, quad_order, sphere_count);
   scene.quad_material = permuted(scene.quad_material, quad_order, sphere_count);
   scene.primitive_numbers = permuted(scene.primitive_numbers, order, 0);

@@ -41,13 +41,37 @@ bool has_deforming_emitters(const SceneData& scene) {
   });
 }
 
-bool has_moving_emitters(const SceneData& scene) {
+/// Whether a sphere or an instance that moves has a material for which `is_wanted` is true.
+template <class Wanted>
+bool any_moves(const SceneData& scene, Wanted&& is_wanted) {
+  for (const MotionData::MovingSphere& moving : scene.motion.spheres)
+    if (is_wanted(scene.materials[scene.sphere_material[moving.sphere]])) return true;
   return std::ranges::any_of(scene.motion.instances, [&](const auto& moving) {
     return std::ranges::any_of(scene.meshes, [&](const Mesh& mesh) {
       return mesh.group == scene.instances[moving.instance].group &&
-             !is_black(scene.materials[mesh.material].emission.radiance);
+             is_wanted(scene.materials[mesh.material]);
     });
   });
+}
+
+bool has_moving_emitters(const SceneData& scene) {
+  return any_moves(scene,
+                   [](const MaterialDescription& m) { return !is_black(m.emission.radiance); });
+}
+
+/// Whether something that moves is filled with a medium whose grid stays where it is. (Around it
+/// there may be one.)
+bool has_moving_grids(const SceneData& scene) {
+  const auto is_filled = [&](const MaterialDescription& m) {
+    if (!m.is_boundary || m.media.inside == no_medium || m.media.inside == m.media.outside)
+      return false;
+    const Medium& medium = scene.media[m.media.inside];
+    return medium.density_grid != no_grid || medium.albedo_grid != no_grid ||
+           medium.emission_grid != no_grid;
+  };
+  return any_moves(scene, is_filled) || std::ranges::any_of(scene.meshes, [&](const Mesh& mesh) {
+           return !mesh.end_positions.empty() && is_filled(scene.materials[mesh.material]);
+         });
 }
 
 /// What edits of materials and lights may change.
@@ -56,6 +80,7 @@ void describe_shading(const SceneData& scene, SceneProperties& properties) {
       scene.material_records, [](const Material& m) { return m.emission != no_emission; });
   properties.has_moving_emitters = has_moving_emitters(scene);
   properties.has_deforming_emitters = has_deforming_emitters(scene);
+  properties.has_moving_grids = has_moving_grids(scene);
   properties.has_rough_conductors = std::ranges::any_of(scene.materials, is_rough_conductor);
   properties.bsdf_kinds = kinds_of(scene);
   properties.emitters = emitter_count(scene);
@@ -129,7 +154,7 @@ bool move_camera(SceneData& scene, const CameraParameters& camera, const Options
 }
 
 void hold_still(SceneData& scene) {
-  scene.motion.camera.clear(), scene.motion.instances.clear();
+  scene.motion.camera.clear(), scene.motion.instances.clear(), scene.motion.spheres.clear();
   for (Mesh& mesh : scene.meshes) mesh.end_positions.clear(), mesh.end_normals.clear();
 }
 
@@ -248,6 +273,7 @@ Scene host_view(const SceneData& scene, int width, int height) {
   view.light_selector.environment_probability = scene.light_list.environment_probability;
   view.environment = scene.environment_map.view();
   view.media.overlap = scene.media_overlap;
+  view.media.are_present = needs_media(scene);
   view.camera_medium_id = camera_medium_id(scene);
   view.light_point_count = count(scene.light_points);
   if (scene.motion.prepared) view.motion = &scene.motion.prepared->view;

@@ -36,6 +36,8 @@ void prepare_motion(SceneData& scene);
 
 /// Tells which lights move, after they have been listed.
 void prepare_moving_lights(SceneData& scene);
+/// What kernels know of spheres that move, in their final order.
+void prepare_moving_spheres(SceneData& scene);
 
 /// As Scene has it. After prepare_media().
 std::uint32_t camera_medium_id(const SceneData& scene);

@@ -139,16 +139,13 @@ void prepare_triangles(SceneData& scene, const ExecutionPlan& plan) {
   if (!scene.media.empty()) separate_boundaries(scene);
   const Bounds bounds = scene_bounds(scene);
   prepare_primitives(scene, !scene.spheres.empty(), bounds);
+  prepare_moving_spheres(scene);
   scene.lights.clear();  // they are in light_list
   const bool masked = !scene.opacities.empty();
   const bool mixed = scene.moves() || masked || !scene.instances.empty() ||
                      !scene.spheres.empty() || accel == Accel::brute || accel == Accel::embree;
-  scene.traits = {accel,
-                  mixed ? Geometry::mixed : Geometry::triangles,
-                  Lighting::full,
-                  masked,
-                  needs_media(scene),
-                  false,
+  scene.traits = {accel,        mixed ? Geometry::mixed : Geometry::triangles,   Lighting::full,
+                  masked,       needs_media(scene) || (masked && scene.moves()), false,
                   scene.moves()};
   const TreeOptions tree = tree_options(accel, plan.builder);
   if (is_device_builder(plan.builder)) {

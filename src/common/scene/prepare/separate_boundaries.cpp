@@ -307,8 +307,10 @@ class Separator {
       }
     }
     for (const auto& [vertex, by] : moved) {
-      Vec3& position = scene_.meshes[vertex.first].positions[vertex.second];
-      position = Vec3(DVec3(position) + by);
+      Mesh& mesh = scene_.meshes[vertex.first];
+      for (std::vector<Vec3>* positions : {&mesh.positions, &mesh.end_positions})
+        if (!positions->empty())
+          (*positions)[vertex.second] = Vec3(DVec3((*positions)[vertex.second]) + by);
     }
   }
 

@@ -776,15 +776,22 @@ TEST(PbrtParameters, CropsAreRoundedUp) {
   EXPECT_EQ(crop("[-1 .5 .5 2]"), (CropWindow{0, 10, 5, 20}));
 }
 
-TEST(PbrtParameters, WhatMovesIsAnInstanceOfTwoKeys) {
+TEST(PbrtParameters, WhatMovesHasTwoKeysAsASphereOrAnInstance) {
+  const std::string disk = " Shape \"disk\"";
   const SceneData all = load_pbrt_silently(world("ActiveTransform All Translate 1 2 3 " + ball));
   expect_near(all.spheres.at(0).center, {1, 2, 3});
   EXPECT_FALSE(all.motion.moves());
   const SceneData scene = load_pbrt_silently(
       "TransformTimes 0.5 2 " +
-      world("ActiveTransform EndTime Translate 1 2 3 ActiveTransform All Translate 0 5 0 " + ball +
-            ball + "ActiveTransform StartTime Scale 2 2 2 " + ball));
-  EXPECT_TRUE(scene.spheres.empty());
+      world("ActiveTransform EndTime Translate 1 2 3 ActiveTransform All Translate 0 5 0 " + disk +
+            disk + ball + "ActiveTransform StartTime Scale 2 2 2 " + ball));
+  ASSERT_EQ(scene.spheres.size(), 1u);  // but not that which shrinks
+  expect_near(scene.spheres[0].center, {0, 5, 0});
+  ASSERT_EQ(scene.motion.spheres.size(), 1u);
+  EXPECT_EQ(scene.motion.spheres[0].sphere, 0u);
+  ASSERT_EQ(scene.motion.spheres[0].keys.size(), 2u);
+  EXPECT_EQ(scene.motion.spheres[0].keys[1].time, 2.0f);
+  expect_near(scene.motion.spheres[0].keys[1].to_world.translation(), {1, 7, 3});
   ASSERT_EQ(scene.instances.size(), 2u);  // the first two move together
   ASSERT_EQ(scene.motion.instances.size(), 2u);
   EXPECT_EQ(scene.meshes.at(0).group, scene.instances[0].group);

@@ -196,16 +196,18 @@ void place_mesh(Context& context, const ShapeEntity& entity, const ShapeMaterial
 }
 
 /// A whole sphere around the entity's origin, where ours can be as pbrt's: unless it is squeezed,
-/// repeated, masked, textured by its points, or a lamp that shows a picture or shines inward. Tells
-/// whether.
+/// grows while it moves, is repeated, masked, textured by its points, or a lamp that shows a
+/// picture or shines inward. Tells whether.
 bool place_sphere(Context& context, const ShapeEntity& entity, const ShapeMaterial& shape,
                   float radius) {
   const Affine& to_world = entity.shape.to_world;
   const std::optional<float> factor = uniform_scale(to_world);
   const bool inside_out = turns(entity, true, shape.emits);
-  if (!factor || entity.group != 0 || entity.shape.end_to_world ||
-      (shape.textured && !shape.mapping.is_uv()) || !shape.material.opacity.is_opaque() ||
-      shape.material.emission.texture != no_texture ||
+  const std::optional<Affine>& end = entity.shape.end_to_world;
+  const std::optional<float> end_factor = end ? uniform_scale(*end) : factor;
+  if (!factor || !end_factor || std::abs(*end_factor - *factor) > 1e-4f * *factor ||
+      entity.group != 0 || (shape.textured && !shape.mapping.is_uv()) ||
+      !shape.material.opacity.is_opaque() || shape.material.emission.texture != no_texture ||
       (shape.emits && (inside_out || shape.two_sided))) {
     return false;
   }
@@ -214,6 +216,12 @@ bool place_sphere(Context& context, const ShapeEntity& entity, const ShapeMateri
   set_power(context, entity, shape, 4 * double{pi} * size * size, 1, material);
   const std::uint32_t number = context.add_material(material);
   const Vec3 center = to_world.translation();
+  if (end) {
+    const Description& d = context.description;
+    context.scene.motion.spheres.push_back(
+        {static_cast<std::uint32_t>(context.scene.spheres.size()),
+         {{d.begin_s, to_world}, {d.end_s, *end}}});
+  }
   if (!shape.textured && !inside_out) {
     context.scene.add_sphere(center, static_cast<float>(size), number);
     return true;
