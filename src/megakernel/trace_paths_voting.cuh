@@ -132,9 +132,8 @@ class PhaseVotingTracer {
   __device__ Color lit_radiance() const {
     const Color radiance = load_radiance();
     if (!ray_.query().result().is_miss()) return radiance;
-    return add_rounded(radiance,
-                       Color(warp_.shadow_radiance[0][lane_], warp_.shadow_radiance[1][lane_],
-                             warp_.shadow_radiance[2][lane_]));
+    return radiance + Color(warp_.shadow_radiance[0][lane_], warp_.shadow_radiance[1][lane_],
+                            warp_.shadow_radiance[2][lane_]);
   }
 
   /// The shadow ray has ended; the path's next ray is ready.
@@ -236,9 +235,7 @@ class PhaseVotingTracer {
     Ray& ray;  ///< the path's next one
     State state = State::no_path;
 
-    __device__ void emit(const PathState&, const Color& emitted) {
-      radiance = add_rounded(radiance, emitted);
-    }
+    __device__ void emit(const PathState&, const Color& emitted) { radiance += emitted; }
     __device__ void cast(const PathState&, const ShadowRay& shadow) {
       PhaseVotingWarp& warp = tracer.warp_;
       const unsigned lane = tracer.lane_;

@@ -132,7 +132,7 @@ struct PoolSink {
   }
   PT_HD void end(const PathState& path) {
     const Color before = has_lights ? samples.samples[path.index].radiance : Color(0.0f);
-    samples.store(path, add_rounded(before, emitted));
+    samples.store(path, before + emitted);
   }
 };
 
@@ -484,7 +484,7 @@ struct TraceShadowRays : ShadowRays {
     if constexpr (Traits::has_media) {
       shadow.medium_id = pool.load_shadow_medium_id(slot);
       const Color passed = shadow_transmittance<Traits>(scene, shadow, key, timed.time);
-      shadow.radiance = multiply_rounded(shadow.radiance, passed);
+      shadow.radiance *= passed;
       return finish(path_index, shadow, false);
     }
     return finish(path_index, shadow, intersect_shadow<Traits>(scene, shadow, key, timed.time));

@@ -230,7 +230,6 @@ TEST(OptixSpheres, AreMetNearTheirSurface) {
   for (const RayRecord& ray : grazing_rays(spheres, 20000, RayType::closest, false).rays) {
     for (const Sphere& sphere : spheres) {
       const float t = sphere_distance(sphere, ray.ray());
-      EXPECT_EQ(written_sphere_distance(sphere, ray.ray()), t);
       if (!(t > 0)) continue;
       const glm::dvec3 to = glm::dvec3(sphere.center) - glm::dvec3(ray.origin);
       const double from_center = glm::length(double{t} * glm::dvec3(ray.direction) - to);

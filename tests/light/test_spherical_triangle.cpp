@@ -29,7 +29,7 @@ double summed_solid_angle(const Corners& t, int steps) {
 
 SphericalTriangle as_seen(const Corners& t) {
   const Vec3 v0(t.v[0]), v1(t.v[1]), v2(t.v[2]);
-  return {v0, v1, v2, cross_rounded(v1 - v0, v2 - v0)};
+  return {v0, v1, v2, glm::cross(v1 - v0, v2 - v0)};
 }
 
 Corners random_triangle(TestRandom& random, double distance) {

@@ -62,7 +62,7 @@ void follow(const Scene& scene, const SamplerSource& source, const PathSettings&
     const Scattering expected = surface_scattering<Kind>(scene, ray, hit, path, settings,
                                                          eager_shading<Kind>(random, path));
     alive = expected.alive, ray = expected.ray;
-    EXPECT_EQ(slot.samples[path_index].radiance, add_rounded(before, expected.emitted));
+    EXPECT_EQ(slot.samples[path_index].radiance, before + expected.emitted);
     EXPECT_EQ(next.to, alive ? StageId::intersect : free_slot);
     EXPECT_EQ(next.shadow, !is_black(expected.shadow.radiance));
     seen.emitted += !is_black(expected.emitted), seen.ended += !alive;

@@ -469,7 +469,7 @@ class BlockWavefront {
     Ray ray;
     PathState path = slot.load_path(radiance, ray);
     const bool is_lit = shadow == Shadow::free;
-    if (is_lit) radiance = add_rounded(radiance, light_that_arrives(slot, path));
+    if (is_lit) radiance += light_that_arrives(slot, path);
     shadow = Shadow::none;
     PathSample sample{samples_, radiance};
     if (state == Path::ended) {
@@ -539,7 +539,7 @@ class BlockWavefront {
     const Color radiance = slot.load_shadow_radiance(medium_id);
     if (medium_id == no_medium) return radiance;
     const std::uint32_t key = shadow_ray_key(scene_, key_of(path), path.rays);
-    return multiply_rounded(radiance, shadow_passes_out_of_line(scene_, medium_id, slot, key));
+    return radiance * shadow_passes_out_of_line(scene_, medium_id, slot, key);
   }
 
   __device__ std::uint32_t key_of(const PathState& path) const {

@@ -62,7 +62,7 @@ struct alignas(128) PathSlot {
   PT_HD Color load_radiance() const { return vec(load_wide(&radiance)); }
   PT_HD void add_radiance(const Color& more) {
     const PathRecord sum = load_wide(&radiance);
-    store_wide(&radiance, pack(add_rounded(vec(sum), more), sum.w));
+    store_wide(&radiance, pack(vec(sum) + more, sum.w));
   }
 
   PT_HD void store_shadow_ray(const ShadowRay& shadow) {

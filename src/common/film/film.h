@@ -181,9 +181,7 @@ struct PathSample {
   const SampleBuffer& samples;
   Color radiance;  ///< of the path so far
 
-  PT_HD void emit(const PathState&, const Color& emitted) {
-    radiance = add_rounded(radiance, emitted);
-  }
+  PT_HD void emit(const PathState&, const Color& emitted) { radiance += emitted; }
   PT_HD void end(const PathState& path) { samples.store(path, radiance); }
 };
 

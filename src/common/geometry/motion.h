@@ -31,9 +31,9 @@ struct alignas(16) MotionSegment {
 
 /// At a part `u` in [0, 1] of the segment.
 PT_HD Affine pose_in(const MotionSegment& segment, float u) {
-  const SinCos turn = sincos_2pi(multiply_rounded(u, segment.turns));
+  const SinCos turn = sincos_2pi(u * segment.turns);
   const auto turned = [&](float from, float to) {
-    return fused_multiply_add(turn.cos, from, multiply_rounded(turn.sin, to));
+    return fused_multiply_add(turn.cos, from, turn.sin * to);
   };
   const float x = turned(segment.rotation.x, segment.towards.x);
   const float y = turned(segment.rotation.y, segment.towards.y);
@@ -42,11 +42,9 @@ PT_HD Affine pose_in(const MotionSegment& segment, float u) {
   // Of a quaternion that need not have unit length.
   const float s = 2.0f / fused_multiply_add(w, w, sum_of_products(x, x, y, y, z, z));
   const auto plus = [s](float a, float b, float c, float d) {
-    return multiply_rounded(s, fused_multiply_add(a, b, multiply_rounded(c, d)));
+    return s * fused_multiply_add(a, b, c * d);
   };
-  const auto squares = [s](float a, float b) {
-    return 1.0f - multiply_rounded(s, fused_multiply_add(a, a, multiply_rounded(b, b)));
-  };
+  const auto squares = [s](float a, float b) { return 1.0f - s * fused_multiply_add(a, a, b * b); };
   const Vec3 rows[3] = {{squares(y, z), plus(x, y, -z, w), plus(x, z, y, w)},
                         {plus(x, y, z, w), squares(x, z), plus(y, z, -x, w)},
                         {plus(x, z, -y, w), plus(y, z, x, w), squares(x, y)}};

@@ -21,30 +21,16 @@ struct alignas(16) Sphere {
 /// b^2 - c, whose two terms cancel (Haines, Guenther and Akenine-Moeller 2019, Ray Tracing Gems,
 /// chapter 7).
 PT_HD float sphere_distance(const Sphere& sphere, const Ray& ray) {
-  const Vec3 oc = sphere.center - ray.origin;
-  const float b = glm::dot(oc, ray.direction);
-  const Vec3 off = oc - b * ray.direction;
-  const float discriminant = sphere.radius_squared - off.x * off.x - off.y * off.y - off.z * off.z;
-  const float half_chord = fast_sqrt(discriminant);
-  const float near = b - half_chord;
-  // Without a branch: where a warp tests candidates one of its rays mostly hits a sphere.
-  return select(discriminant<0.0f, -1.0f, near> 0.0f ? near : b + half_chord);
-}
-
-/// The same bits by operations that are written out as CUDA's compiler contracts those above: that
-/// of OptiX contracts others.
-PT_HD float written_sphere_distance(const Sphere& sphere, const Ray& ray) {
   const Vec3 oc = sphere.center - ray.origin, d = ray.direction;
-  const float b =
-      fused_multiply_add(oc.z, d.z, fused_multiply_add(oc.x, d.x, multiply_rounded(oc.y, d.y)));
+  const float b = fused_multiply_add(oc.z, d.z, fused_multiply_add(oc.x, d.x, oc.y * d.y));
+  const Vec3 off = add_scaled(oc, -b, d);
   float discriminant = sphere.radius_squared;
   PT_UNROLL(3)
-  for (int i = 0; i < 3; ++i) {
-    const float off = fused_multiply_add(-b, d[i], oc[i]);
-    discriminant = fused_multiply_add(-off, off, discriminant);
-  }
-  const float half_chord = fast_sqrt(discriminant), near = add_rounded(b, -half_chord);
-  return select(discriminant<0.0f, -1.0f, near> 0.0f ? near : add_rounded(b, half_chord));
+  for (int i = 0; i < 3; ++i) discriminant = fused_multiply_add(-off[i], off[i], discriminant);
+  const float half_chord = fast_sqrt(discriminant), near = b - half_chord;
+  // Without a branch: where a warp tests candidates one of its rays mostly hits a sphere.
+  const float first = near > 0.0f ? near : b + half_chord;
+  return select(discriminant < 0.0f, -1.0f, first);
 }
 
 /// The point of the surface nearest to the ray's point at `t`.
@@ -74,15 +60,14 @@ struct alignas(16) SphereFrame {
 
 /// The distance of a local point from the axis z.
 PT_HD float distance_from_axis(const Vec3& local) {
-  return square_root(fused_multiply_add(local.x, local.x, multiply_rounded(local.y, local.y)));
+  return square_root(fused_multiply_add(local.x, local.x, local.y * local.y));
 }
 
 /// Mitsuba's coordinates: u goes around z from x towards y; v, as ours does, upwards along z.
 PT_HD Vec2 sphere_uv(const Vec3& local) {
-  const float turns = multiply_rounded(0.5f * inverse_pi, atan2f(local.y, local.x));
+  const float turns = 0.5f * inverse_pi * atan2f(local.y, local.x);
   const float from_zenith = atan2f(distance_from_axis(local), local.z);  // exact at the poles
-  return {turns < 0.0f ? add_rounded(turns, 1.0f) : turns,
-          fused_multiply_add(-inverse_pi, from_zenith, 1.0f)};
+  return {turns < 0.0f ? turns + 1.0f : turns, fused_multiply_add(-inverse_pi, from_zenith, 1.0f)};
 }
 
 /// The derivatives of the point by u and by v, on a sphere of this radius (pbrt-v4, section 6.2.2).

@@ -114,8 +114,7 @@ PT_HD TriangleHit intersect_triangle(const TriangleRay& ray, const Vec3& v0, con
                                      const Vec3& v2) {
   const Vec3 a = v0 - ray.origin, b = v1 - ray.origin, c = v2 - ray.origin;
   const auto project = [](const Vec3& axis, const Vec3& v) {
-    return fused_multiply_add(axis.x, v.x,
-                              fused_multiply_add(axis.y, v.y, multiply_rounded(axis.z, v.z)));
+    return fused_multiply_add(axis.x, v.x, fused_multiply_add(axis.y, v.y, axis.z * v.z));
   };
   const float ax = project(ray.x_axis, a), ay = project(ray.y_axis, a);
   const float bx = project(ray.x_axis, b), by = project(ray.y_axis, b);
@@ -123,7 +122,7 @@ PT_HD TriangleHit intersect_triangle(const TriangleRay& ray, const Vec3& v0, con
   const float u = difference_of_products(cx, by, cy, bx);
   const float v = difference_of_products(ax, cy, ay, cx);
   const float w = difference_of_products(bx, ay, by, ax);
-  const float determinant = add_rounded(add_rounded(u, v), w);
+  const float determinant = u + v + w;
   const bool miss = differ_in_sign(u, v, w);
   const float inverse = approximate_inverse(determinant);
   const auto depth = [&ray](const Vec3& p) {
@@ -131,9 +130,8 @@ PT_HD TriangleHit intersect_triangle(const TriangleRay& ray, const Vec3& v0, con
   };
   // Without area all three are 0, and t is NaN.
   const float sum = sum_of_products(u, depth(a), v, depth(b), w, depth(c));
-  const float t = multiply_rounded(multiply_rounded(sum, inverse), ray.inverse);
-  return {miss ? bits_to_float(0x7fffffffu) : t, multiply_rounded(v, inverse),
-          multiply_rounded(w, inverse)};
+  const float t = sum * inverse * ray.inverse;
+  return {miss ? bits_to_float(0x7fffffffu) : t, v * inverse, w * inverse};
 }
 
 }  // namespace pt

@@ -52,7 +52,7 @@ PT_HD bool is_in_sun(const Sun& sun, const Vec3& direction) {
 
 /// Uniform over the disk's solid angle. The shadow ray ends beyond the scene.
 PT_HD LightSample sample_sun(const Vec3& direction, float one_minus_cos, float u0, float u1) {
-  const float h = multiply_rounded(u0, one_minus_cos), sin_theta = fast_sqrt(h * (2.0f - h));
+  const float h = u0 * one_minus_cos, sin_theta = fast_sqrt(h * (2.0f - h));
   const SinCos phi = sincos_2pi(u1);
   const Frame frame = make_frame(direction);
   const Vec3 wi = normalize(frame.to_world({sin_theta * phi.cos, sin_theta * phi.sin, 1.0f - h}));

@@ -43,7 +43,7 @@ PT_HD float sine_of(float cosine) { return fast_sqrt(fused_multiply_add(-cosine,
 
 /// cos(max(0, a - b)) of two angles between 0 and pi.
 PT_HD float cos_difference(float cos_a, float sin_a, float cos_b, float sin_b) {
-  return cos_a > cos_b ? 1.0f : fused_multiply_add(sin_a, sin_b, multiply_rounded(cos_a, cos_b));
+  return cos_a > cos_b ? 1.0f : fused_multiply_add(sin_a, sin_b, cos_a * cos_b);
 }
 
 /// The shading point and its normal, for which lights are weighted.
@@ -66,14 +66,14 @@ inline constexpr float importance_max = 1e37f;
 /// estimated at its centre. The bound alone makes large lights near by too important (measured: 1.3
 /// times the variance in rooms), the estimate alone is 0 for some that contribute.
 PT_HD float blend_cosine(float bound, float middle) {
-  return fused_multiply_add(0.25f, bound, multiply_rounded(0.75f, fmaxf(middle, 0.0f)));
+  return fused_multiply_add(0.25f, bound, 0.75f * fmaxf(middle, 0.0f));
 }
 
 /// The importance of a node: an estimate of the irradiance by its lights without occlusion, >= 0
 /// (pbrt-v4, section 12.6.3). No branches: the two nodes of a pair are computed side by side.
 PT_HD float light_importance(const LightNode& node, const LightReceiver& receiver) {
   const Vec3 way = node.center - receiver.point;
-  const float distance2 = dot(way, way), radius2 = multiply_rounded(node.radius, node.radius);
+  const float distance2 = dot(way, way), radius2 = node.radius * node.radius;
   const bool inside = !(distance2 > radius2);
   const float inverse = inverse_sqrt_of_normal(fmaxf(distance2, 1e-30f));
   const float sin_ball = fminf(node.radius * inverse, 1.0f), cos_ball = sine_of(sin_ball);
@@ -82,10 +82,8 @@ PT_HD float light_importance(const LightNode& node, const LightReceiver& receive
   const float cos_light = -dot(unpack_direction(node.axis), way) * inverse;
   const float sin_light = sine_of(cos_light);
   const float cos_cone = unpack_cosine(node.cos_cone), sin_cone = sine_of(cos_cone);
-  const float cos_slack =
-      fused_multiply_add(cos_cone, cos_ball, -multiply_rounded(sin_cone, sin_ball));
-  const float sin_slack =
-      fused_multiply_add(sin_cone, cos_ball, multiply_rounded(cos_cone, sin_ball));
+  const float cos_slack = fused_multiply_add(cos_cone, cos_ball, -(sin_cone * sin_ball));
+  const float sin_slack = fused_multiply_add(sin_cone, cos_ball, cos_cone * sin_ball);
   const float bound = inside || sin_slack <= 0.0f
                           ? 1.0f
                           : cos_difference(cos_light, sin_light, cos_slack, sin_slack);

@@ -147,7 +147,7 @@ struct alignas(16) SpotLight {
     const Frame frame = make_frame(direction);
     const SinCos turn = sincos_2pi(roll);
     const Vec3 right = turn.cos * frame.tangent + turn.sin * frame.bitangent;
-    const Vec3 up = (roll < 0.0f ? -1.0f : 1.0f) * cross_rounded(right, direction);
+    const Vec3 up = (roll < 0.0f ? -1.0f : 1.0f) * glm::cross(right, direction);
     const float cos_edge = cos_inner < cos_outer ? cos_inner : cos_outer;
     const float tangent = sqrtf(fmaxf(1.0f - cos_edge * cos_edge, 0.0f)) / cos_edge;
     const float scale = 0.5f / (dot(direction, away) * tangent);
@@ -186,7 +186,7 @@ struct alignas(16) ProjectorLight {
 
   PT_HD Projection project(const Vec3& away) const {
     const float cosine = dot(direction, away);
-    const Vec3 up = aspect * cross_rounded(right, direction);
+    const Vec3 up = aspect * glm::cross(right, direction);
     const float u = 0.5f + 0.5f * dot(right, away) / cosine;
     const float v = 0.5f + 0.5f * dot(up, away) / cosine;
     const bool inside = cosine > 0.0f && u >= 0.0f && u <= 1.0f && v >= 0.0f && v <= 1.0f;

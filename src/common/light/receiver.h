@@ -9,7 +9,7 @@ namespace pt {
 /// A unit vector in an octahedron (Cigolla et al. 2014): two numbers of 16 bits. Within 1e-4 rad.
 PT_HD std::uint32_t pack_direction(const Vec3& v) {
   const float scale = divide(1.0f, fabsf(v.x) + fabsf(v.y) + fabsf(v.z));
-  float x = multiply_rounded(v.x, scale), y = multiply_rounded(v.y, scale);
+  float x = v.x * scale, y = v.y * scale;
   if (v.z < 0.0f) {
     const float folded = copysignf(1.0f - fabsf(y), x);
     y = copysignf(1.0f - fabsf(x), y), x = folded;
@@ -27,7 +27,7 @@ PT_HD Vec3 unpack_direction(std::uint32_t packed) {
   const float x = signed_unit(packed & 0xffffu), y = signed_unit(packed >> 16);
   const float z = 1.0f - fabsf(x) - fabsf(y), below = fmaxf(-z, 0.0f);
   const Vec3 v(x - copysignf(below, x), y - copysignf(below, y), z);
-  return multiply_rounded(v, Vec3(inverse_sqrt_of_normal(dot(v, v))));
+  return v * Vec3(inverse_sqrt_of_normal(dot(v, v)));
 }
 
 /// The packed normal on the side from which the path came, the last bit being `both_sides`.

@@ -23,22 +23,21 @@ struct SphericalTriangle {
     a = la * v0, b = lb * v1, c = lc * v2;
     volume = fabsf(dot(v0, normal)) * la * lb * lc;
     // Van Oosterom and Strackee (1983).
-    solid_angle = 2.0f * atan2f(volume, add_rounded(1.0f + dot(a, b), dot(b, c) + dot(c, a)));
+    solid_angle = 2.0f * atan2f(volume, 1.0f + dot(a, b) + (dot(b, c) + dot(c, a)));
   }
 
   /// A unit vector into it, uniform in solid angle.
   PT_HD Vec3 sample(float u0, float u1) const {
     // The corner c moves towards a until the rest, between a, b and it, has the share u0.
     const SinCos half = sincos_2pi(0.25f * inverse_pi * u0 * solid_angle);
-    const float to_a =
-        fused_multiply_add(volume, half.cos, -multiply_rounded(dot(b, c) + dot(c, a), half.sin));
+    const float to_a = fused_multiply_add(volume, half.cos, -((dot(b, c) + dot(c, a)) * half.sin));
     const float to_c = (1.0f + dot(a, b)) * half.sin;
     const Vec3 middle = add_scaled(to_a * a, to_c, c);
     const float turn = divide(2.0f * dot(a, middle), fmaxf(dot(middle, middle), 1e-30f));
     const Vec3 moved = add_scaled(-a, turn, middle);
     // On the arc from b to it, uniform in the cosine of the angle to b.
     const Vec3 apart = moved - b;
-    const float h = multiply_rounded(0.5f * u1, dot(apart, apart));  // 1 - cos
+    const float h = 0.5f * u1 * dot(apart, apart);  // 1 - cos
     const Vec3 across = add_scaled(moved, -dot(moved, b), b);
     const float sine = square_root(fmaxf(0.0f, h * (2.0f - h)));
     const float scale = sine * inverse_sqrt(fmaxf(dot(across, across), 1e-30f));
@@ -67,7 +66,7 @@ struct TriangleSampler {
   Vec3 normal;  ///< cross(edge1, edge2), whose length is twice the area
 
   PT_HD TriangleSampler(const Vec3& relative_v0, const Vec3& e1, const Vec3& e2)
-      : v0(relative_v0), edge1(e1), edge2(e2), normal(cross_rounded(e1, e2)) {}
+      : v0(relative_v0), edge1(e1), edge2(e2), normal(glm::cross(e1, e2)) {}
 
   /// Whether area / distance^2 is above 1/10: below, the density per area differs little from it.
   PT_HD bool uses_solid_angle_sampling() const {
@@ -101,8 +100,8 @@ struct TriangleSampler {
     const auto share = [&](const Vec3& across) {
       return fminf(fmaxf(dot(across, normal) * scale, 0.0f), 1.0f);
     };
-    const float b1 = share(cross_rounded(p, edge2));
-    return {b1, fminf(share(cross_rounded(edge1, p)), 1.0f - b1)};
+    const float b1 = share(glm::cross(p, edge2));
+    return {b1, fminf(share(glm::cross(edge1, p)), 1.0f - b1)};
   }
 
   PT_HD TrianglePoint sample(float u0, float u1) const {

@@ -63,7 +63,7 @@ struct Conductor {
 
   /// Density of directions: that of the visible normals over 4 dot(wo, m).
   PT_HD static float pdf(const Microfacets& facets, const Vec3& wo, const Vec3& m) {
-    return multiply_rounded(0.25f * facets.distribution(m), facets.visible_over_cosine(wo));
+    return 0.25f * facets.distribution(m) * facets.visible_over_cosine(wo);
   }
 };
 
@@ -103,9 +103,8 @@ struct CompensatedConductor : Conductor {
     const float lost_o = loss.at(fminf(fabsf(wo.z), 1.0f)), lost_i = loss.at(cosine);
     const float back = lost_o * lost_i / loss.average() * cosine_hemisphere_pdf(cosine);
     const BsdfValue first = Conductor::evaluate(wo, wi);
-    return {
-        add_scaled(first.f, back, color(loss.average())),
-        fused_multiply_add(1.0f - lost_o, first.pdf, multiply_rounded(lost_o, loss.pdf(cosine)))};
+    return {add_scaled(first.f, back, color(loss.average())),
+            fused_multiply_add(1.0f - lost_o, first.pdf, lost_o * loss.pdf(cosine))};
   }
 
  private:

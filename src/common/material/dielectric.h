@@ -65,7 +65,7 @@ struct ThinDielectric {
     return divide(2.0f * once, 1.0f + once);
   }
   PT_HD Color transmittance(float cosine) const {
-    return multiply_rounded(passed, Color(1.0f - reflectance(cosine)));
+    return passed * Color(1.0f - reflectance(cosine));
   }
 
   PT_HD BsdfSample sample(const Vec3& wo, const Vec3& u) const {

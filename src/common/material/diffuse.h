@@ -54,7 +54,7 @@ struct OrenNayar {
   PT_HD BsdfValue evaluate(const Vec3& wo, const Vec3& wi) const {
     if (!same_side(wo, wi)) return {};
     const float pdf = cosine_hemisphere_pdf(fabsf(wi.z));
-    return {albedo * multiply_rounded(roughness_factor(wo, wi), pdf), pdf};
+    return {albedo * (roughness_factor(wo, wi) * pdf), pdf};
   }
 
  private:
@@ -65,9 +65,9 @@ struct OrenNayar {
     const float variance = sigma * sigma;
     const float a = 1.0f - divide(0.5f * variance, variance + 0.33f);
     const float b = divide(0.45f * variance, variance + 0.09f);
-    const float both = fused_multiply_add(wo.x, wi.x, multiply_rounded(wo.y, wi.y));
+    const float both = fused_multiply_add(wo.x, wi.x, wo.y * wi.y);
     const float sine_tangent = divide(fmaxf(both, 0.0f), fmaxf(fabsf(wo.z), fabsf(wi.z)));
-    const float most = multiply_rounded(max_abs(albedo), fused_multiply_add(0.5f, b, a));
+    const float most = max_abs(albedo) * fused_multiply_add(0.5f, b, a);
     return divide(fused_multiply_add(b, sine_tangent, a), fmaxf(most, 1.0f));
   }
 };

@@ -14,8 +14,7 @@ PT_HD float fresnel_dielectric(float cos_i, float eta) {
   const float cos_t = square_root(1.0f - sin2_t);
   const float parallel = divide(eta * cos_i - cos_t, eta * cos_i + cos_t);
   const float perpendicular = divide(cos_i - eta * cos_t, cos_i + eta * cos_t);
-  return 0.5f *
-         fused_multiply_add(parallel, parallel, multiply_rounded(perpendicular, perpendicular));
+  return 0.5f * fused_multiply_add(parallel, parallel, perpendicular * perpendicular);
 }
 
 /// The same for a boundary with the complex relative index eta + i k; eta and k are not negative
@@ -26,12 +25,11 @@ PT_HD float fresnel_conductor(float cos_i, float eta, float k) {
   // (a + i b)^2 = (eta + i k)^2 - sin^2; `norm` is a^2 + b^2.
   const float real = difference_of_products(eta, eta, k, k) - sin2;
   const float imaginary = 2.0f * eta * k;
-  const float norm =
-      square_root(fused_multiply_add(real, real, multiply_rounded(imaginary, imaginary)));
+  const float norm = square_root(fused_multiply_add(real, real, imaginary * imaginary));
   const float a = square_root(fmaxf(0.0f, 0.5f * (norm + real)));
   const float mixed = 2.0f * a * cos_i;
   const float perpendicular = divide(norm + cos2 - mixed, norm + cos2 + mixed);
-  const float both = fused_multiply_add(cos2, norm, multiply_rounded(sin2, sin2));
+  const float both = fused_multiply_add(cos2, norm, sin2 * sin2);
   const float skew = mixed * sin2;
   const float ratio = divide(both - skew, fmaxf(both + skew, 1e-30f));
   return 0.5f * fused_multiply_add(perpendicular, ratio, perpendicular);

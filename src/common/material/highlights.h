@@ -28,9 +28,8 @@ struct TwoLobes {
   PT_HD BsdfValue evaluate(const Vec3& wi, float glossy_pdf, float factor) const {
     const float p = glossy_probability();
     const float diffuse_pdf = cosine_hemisphere_pdf(fabsf(wi.z));
-    return {add_scaled(multiply_rounded(diffuse, Color(diffuse_pdf)),
-                       multiply_rounded(factor, glossy_pdf), specular),
-            fused_multiply_add(p, glossy_pdf, multiply_rounded(1.0f - p, diffuse_pdf))};
+    return {add_scaled(diffuse * Color(diffuse_pdf), factor * glossy_pdf, specular),
+            fused_multiply_add(p, glossy_pdf, (1.0f - p) * diffuse_pdf)};
   }
 
   /// A direction of the diffuse lobe, on the side of wo.
@@ -81,7 +80,7 @@ struct Phong {
     const float lobe = power(dot(mirrored(wo), wi), exponent) * (0.5f * inverse_pi);
     // (n + 1) normalises the density, (n + 2) the reflectance at normal incidence.
     const float factor = divide(exponent + 2.0f, exponent + 1.0f) * fabsf(wi.z);
-    return two().evaluate(wi, multiply_rounded(lobe, exponent + 1.0f), factor);
+    return two().evaluate(wi, lobe * (exponent + 1.0f), factor);
   }
 
  private:
@@ -136,7 +135,7 @@ struct Ward {
     if (!same_side(wo, wi)) return {};
     const Vec3 h = wo + wi;
     const float x = h.x / (alpha_x * h.z), y = h.y / (alpha_y * h.z);
-    const float tangent2 = fused_multiply_add(x, x, multiply_rounded(y, y));
+    const float tangent2 = fused_multiply_add(x, x, y * y);
     const float z = fabsf(h.z);
     const float pdf =
         tangent2 < 80.0f ? dot(h, h) * expf(-tangent2) / (2.0f * pi * alpha_x * alpha_y * z * z * z)

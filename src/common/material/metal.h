@@ -44,8 +44,8 @@ struct Metal {
     const float half_chord = sqrtf(discriminant);
     const float t0 = fmaxf(b - half_chord, 0.0f);
     const float t1 = fmaxf(b + half_chord, 0.0f);
-    return multiply_rounded(difference_of_products(t1 * t1, t1, t0 * t0, t0),
-                            0.25f * inverse_pi / (fuzz * fuzz * fuzz));
+    return difference_of_products(t1 * t1, t1, t0 * t0, t0) *
+           (0.25f * inverse_pi / (fuzz * fuzz * fuzz));
   }
 };
 

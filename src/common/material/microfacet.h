@@ -24,18 +24,18 @@ struct Microfacets {
   PT_HD float distribution(const Vec3& m) const {
     const float x = divide(m.x, alpha_x), y = divide(m.y, alpha_y);
     const float scale = divide(inverse_pi, alpha_x * alpha_y);
-    const float slopes = fused_multiply_add(x, x, multiply_rounded(y, y));
+    const float slopes = fused_multiply_add(x, x, y * y);
     const float cos2 = m.z * m.z;
-    if (is_beckmann) return multiply_rounded(scale, beckmann_distribution(slopes, cos2));
+    if (is_beckmann) return scale * beckmann_distribution(slopes, cos2);
     const float sum = fused_multiply_add(m.z, m.z, slopes);
-    return multiply_rounded(scale, divide(1.0f, sum * sum));
+    return scale * divide(1.0f, sum * sum);
   }
 
   /// The part of the facets that `w` sees (Smith's G1), divided by |w.z|: finite at the horizon,
   /// unless it is perfectly smooth.
   PT_HD float visible_over_cosine(const Vec3& w) const {
     const float x = alpha_x * w.x, y = alpha_y * w.y, z = fabsf(w.z);
-    const float slopes = fused_multiply_add(x, x, multiply_rounded(y, y));
+    const float slopes = fused_multiply_add(x, x, y * y);
     if (is_beckmann) return beckmann_visible(z, slopes);
     return divide(2.0f, z + fmaxf(square_root(fused_multiply_add(z, z, slopes)), 1e-20f));
   }
@@ -80,13 +80,13 @@ struct Microfacets {
   /// x = erf(slope) (Jakob 2014, 'An Improved Visible Normal Sampling Routine for the Beckmann
   /// Distribution').
   PT_NOINLINE static Vec3 sample_beckmann(Vec3 w, float u0, float u1) {
-    const float sine2 = fused_multiply_add(w.x, w.x, multiply_rounded(w.y, w.y));
+    const float sine2 = fused_multiply_add(w.x, w.x, w.y * w.y);
     const float sine = sqrtf(sine2);
     const float along = visible_slope(sine, fmaxf(w.z, 1e-6f), u0);
     const float across = erf_inverse(fused_multiply_add(2.0f, u1, -1.0f));
     const float c = sine > 0.0f ? w.x / sine : 1.0f, s = sine > 0.0f ? w.y / sine : 0.0f;
-    return {-difference_of_products(c, along, s, across),
-            -fused_multiply_add(s, along, multiply_rounded(c, across)), 1.0f};
+    return {-difference_of_products(c, along, s, across), -fused_multiply_add(s, along, c * across),
+            1.0f};
   }
 
   PT_HD static float visible_slope(float sine, float cosine, float u) {

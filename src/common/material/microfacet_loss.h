@@ -53,13 +53,13 @@ class MicrofacetLoss {
   /// (Beckmann: alpha^2).
   PT_HD float at(float cosine) const {
     const float part = 1.0f / fused_multiply_add(cosine, cosine, k_);
-    const float t = multiply_rounded(cosine, sqrtf(part));
+    const float t = cosine * sqrtf(part);
     float sum = terms_[MicrofacetLossFit::powers - 1];
     PT_UNROLL(8)
     for (int i = MicrofacetLossFit::powers - 2; i >= 0; --i) {
       sum = fused_multiply_add(sum, t, terms_[i]);
     }
-    return fmaxf(multiply_rounded(k_ * part, sum), 0.0f);
+    return fmaxf(k_ * part * sum, 0.0f);
   }
 
   /// The loss of diffuse light: the mean of at() over the square of the cosine.
@@ -67,21 +67,20 @@ class MicrofacetLoss {
 
   /// A cosine, by a density that is nearly at() times the cosine: u uniform in [0, 1).
   PT_HD float sample_cosine(float u) const {
-    return sqrtf(fminf(multiply_rounded(k_, expf(multiply_rounded(u, log_)) - 1.0f), 1.0f));
+    return sqrtf(fminf(k_ * (expf(u * log_) - 1.0f), 1.0f));
   }
   /// Its density per solid angle; any azimuth is as likely.
   PT_HD float pdf(float cosine) const {
-    return inverse_pi * cosine / multiply_rounded(log_, fused_multiply_add(cosine, cosine, k_));
+    return inverse_pi * cosine / (log_ * fused_multiply_add(cosine, cosine, k_));
   }
 
  private:
   PT_HD MicrofacetLoss(const MicrofacetLossFit& fit, float alpha, float y)
-      : k_(multiply_rounded(16.0f * alpha, alpha)), log_(logf(1.0f + 1.0f / k_)) {
+      : k_(16.0f * alpha * alpha), log_(logf(1.0f + 1.0f / k_)) {
     PT_UNROLL(8)
     for (int i = 0; i < MicrofacetLossFit::powers; ++i) terms_[i] = polynomial(fit.loss[i], y);
     const float with_log = polynomial(fit.log_average, alpha);
-    average_ =
-        multiply_rounded(k_, fused_multiply_add(log_, with_log, polynomial(fit.average, alpha)));
+    average_ = k_ * fused_multiply_add(log_, with_log, polynomial(fit.average, alpha));
   }
 
   template <int terms>

@@ -20,14 +20,14 @@ struct CoatedBody {
   PT_HD Color leaving(float transmitted) const {
     const float scale = divide(transmitted, coat.x * coat.x);
     const auto channel = [&](float d) {
-      return divide(multiply_rounded(d, scale), fused_multiply_add(-coat.z, d, 1.0f - coat.y));
+      return divide(d * scale, fused_multiply_add(-coat.z, d, 1.0f - coat.y));
     };
     return {channel(diffuse.x), channel(diffuse.y), channel(diffuse.z)};
   }
 
   /// The probability of sampling the coat, which reflects the part `reflectance`.
   PT_HD float coat_probability(float reflectance) const {
-    const float s = multiply_rounded(reflectance, mean(specular));
+    const float s = reflectance * mean(specular);
     const float sum = fused_multiply_add(1.0f - reflectance, mean(diffuse), s);
     return sum > 0.0f ? divide(s, sum) : 1.0f;
   }
@@ -62,7 +62,7 @@ struct Plastic {
     }
     Vec3 wi = sample_cosine_hemisphere(u.x, u.y);
     const float transmitted = (1.0f - reflected) * (1.0f - fresnel_dielectric(wi.z, body().eta()));
-    const float pdf = multiply_rounded(1.0f - p, cosine_hemisphere_pdf(wi.z));
+    const float pdf = (1.0f - p) * cosine_hemisphere_pdf(wi.z);
     if (wo.z < 0.0f) wi.z = -wi.z;
     return {wi, body().leaving(divide(transmitted, 1.0f - p)), pdf,
             Lobe::reflection | Lobe::diffuse};
@@ -75,8 +75,7 @@ struct Plastic {
     const float transmitted =
         (1.0f - reflected) * (1.0f - fresnel_dielectric(cosine, body().eta()));
     const float pdf = cosine_hemisphere_pdf(cosine);
-    return {body().leaving(multiply_rounded(transmitted, pdf)),
-            multiply_rounded(1.0f - body().coat_probability(reflected), pdf)};
+    return {body().leaving(transmitted * pdf), (1.0f - body().coat_probability(reflected)) * pdf};
   }
 };
 
@@ -130,13 +129,12 @@ struct RoughPlastic {
     const float diffuse_pdf = cosine_hemisphere_pdf(fabsf(wi.z));
     const Vec3 m = normalize(wo + wi);
     const Microfacets rough = facets();
-    const float glossy_pdf =
-        multiply_rounded(0.25f * rough.distribution(m), rough.visible_over_cosine(wo));
+    const float glossy_pdf = 0.25f * rough.distribution(m) * rough.visible_over_cosine(wo);
     const float g1_i = rough.visible_over_cosine(wi) * fabsf(wi.z);
     const float reflected = fresnel_dielectric(fminf(fabsf(dot(wo, m)), 1.0f), body().eta());
     return {add_scaled(body().leaving(transmitted * transmittance(wi) * diffuse_pdf),
-                       multiply_rounded(reflected * g1_i, glossy_pdf), specular),
-            fused_multiply_add(p, glossy_pdf, multiply_rounded(1.0f - p, diffuse_pdf))};
+                       reflected * g1_i * glossy_pdf, specular),
+            fused_multiply_add(p, glossy_pdf, (1.0f - p) * diffuse_pdf)};
   }
 
  private:

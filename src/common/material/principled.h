@@ -145,15 +145,14 @@ struct Principled {
       const Color root(square_root(base_color.x), square_root(base_color.y),
                        square_root(base_color.z));
       return {root * (glass() * (1.0f - fresnel) * (lobe * g1_i)),
-              multiply_rounded(choice.specular * transmission_probability(view, fresnel),
-                               lobe * (view.eta * view.eta))};
+              choice.specular * transmission_probability(view, fresnel) *
+                  (lobe * (view.eta * view.eta))};
     }
     const float lobe = 0.25f * dg1_o;
     Color f(0.0f);
     // As in Mitsuba, a metal with eta 1 reflects nothing either.
     if (eta != 1.0f) f = reflectance(view, cos_o, fresnel) * (lobe * g1_i);
-    float pdf =
-        multiply_rounded(choice.specular * (1.0f - transmission_probability(view, fresnel)), lobe);
+    float pdf = choice.specular * (1.0f - transmission_probability(view, fresnel)) * lobe;
     if (!view.inside) {
       if (opaque() > 0.0f) {
         PrincipledBase below = base();

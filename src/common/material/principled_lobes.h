@@ -80,7 +80,7 @@ struct Clearcoat {
 
   /// Density of the facets' area by their unit normal.
   PT_HD float distribution(const Vec3& m) const {
-    const float sin2 = fused_multiply_add(m.x, m.x, multiply_rounded(m.y, m.y));
+    const float sin2 = fused_multiply_add(m.x, m.x, m.y * m.y);
     return (alpha2 - 1.0f) * inverse_pi /
            (logf(alpha2) * fused_multiply_add(alpha2 * m.z, m.z, sin2));
   }

@@ -76,7 +76,7 @@ struct PrincipledThin {
     const float diffuse =
         (1.0f - spec_trans) * (reflects ? 1.0f - diffuse_transmission() : diffuse_transmission());
     Color f(0.0f);
-    float pdf = multiply_rounded(diffuse * inverse_pi, i.z);
+    float pdf = diffuse * inverse_pi * i.z;
     if (diffuse > 0.0f) {
       f = (diffuse * i.z) *
           (reflects ? base().evaluate(o.z, i.z, cosine) : inverse_pi * base_color);

@@ -54,7 +54,7 @@ struct RoughDielectric {
     if (reflects) {
       return {side * i,
               reflected * g1_i,
-              multiply_rounded(0.25f * dg1_o, fresnel),
+              0.25f * dg1_o * fresnel,
               Lobe::reflection | Lobe::glossy,
               1.0f,
               entering ? 1.0f : inside_eta2};
@@ -62,7 +62,7 @@ struct RoughDielectric {
     // Radiance inside is eta^2 times that outside (see dielectric.h).
     return {side * i,
             passed * divide(g1_i, relative_eta * relative_eta),
-            multiply_rounded(dg1_o * transmission_jacobian(o, i, m, relative_eta), 1.0f - fresnel),
+            dg1_o * transmission_jacobian(o, i, m, relative_eta) * (1.0f - fresnel),
             Lobe::transmission | Lobe::glossy,
             relative_eta,
             entering ? inside_eta2 : 1.0f};
@@ -84,11 +84,10 @@ struct RoughDielectric {
     const float g1_i = facets.visible_over_cosine(i) * fabsf(i.z);
     const float dg1_o = facets.distribution(m) * facets.visible_over_cosine(o);
     if (reflects) {
-      const float pdf = multiply_rounded(0.25f * dg1_o, fresnel);
+      const float pdf = 0.25f * dg1_o * fresnel;
       return {reflected * (pdf * g1_i), pdf};
     }
-    const float pdf =
-        multiply_rounded(dg1_o * transmission_jacobian(o, i, m, relative_eta), 1.0f - fresnel);
+    const float pdf = dg1_o * transmission_jacobian(o, i, m, relative_eta) * (1.0f - fresnel);
     return {passed * divide(pdf * g1_i, relative_eta * relative_eta), pdf};
   }
 

@@ -35,7 +35,7 @@ PT_HD float erf_inverse(float y) {
   float w = -logf(fmaxf((1.0f - y) * (1.0f + y), 1e-7f));
   float p;
   if (w < 5.0f) {
-    w = w - 2.5f;
+    w -= 2.5f;
     p = 2.81022636e-08f;
     p = fused_multiply_add(p, w, 3.43273939e-07f);
     p = fused_multiply_add(p, w, -3.5233877e-06f);
@@ -57,7 +57,7 @@ PT_HD float erf_inverse(float y) {
     p = fused_multiply_add(p, w, 1.00167406f);
     p = fused_multiply_add(p, w, 2.83297682f);
   }
-  return multiply_rounded(p, y);
+  return p * y;
 }
 
 /// Divides numbers below 2^31 by a divisor known only at run time, 1 <= divisor < 2^31, by one

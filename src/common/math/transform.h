@@ -62,15 +62,15 @@ PT_HD Affine inverse(const Affine& a) {
   const auto cofactor = [&](int i, int j) {
     return at(i + 1, j + 1) * at(i + 2, j + 2) - at(i + 1, j + 2) * at(i + 2, j + 1);
   };
-  const auto term = [&](int j) { return multiply_rounded(at(0, j), cofactor(0, j)); };
-  const double determinant = add_rounded(add_rounded(term(0), term(1)), term(2));
+  const auto term = [&](int j) { return at(0, j) * cofactor(0, j); };
+  const double determinant = term(0) + term(1) + term(2);
   Affine result;
   for (int i = 0; i < 3; ++i) {
     double moved = 0;
     for (int j = 0; j < 3; ++j) {
       const double value = cofactor(j, i) / determinant;
       result.row[i][j] = static_cast<float>(value);
-      moved = add_rounded(moved, -multiply_rounded(value, static_cast<double>(a.row[j].w)));
+      moved -= value * static_cast<double>(a.row[j].w);
     }
     result.row[i].w = static_cast<float>(moved);
   }
@@ -112,7 +112,7 @@ struct Frame {
 PT_HD Frame make_frame(const Vec3& n) {
   const float sign = copysignf(1.0f, n.z);
   const float a = -approximate_inverse(sign + n.z);
-  const float b = multiply_rounded(n.x * n.y, a);
+  const float b = n.x * n.y * a;
   return {{fused_multiply_add(sign * n.x * n.x, a, 1.0f), sign * b, -sign * n.x},
           {b, fused_multiply_add(n.y * n.y, a, sign), -n.y},
           n};
@@ -124,7 +124,7 @@ PT_HD Frame make_frame(const Vec3& n, const Vec3& dp_du) {
   const float length2 = dot(across, across);
   if (!(length2 > 1e-12f * dot(dp_du, dp_du))) return make_frame(n);
   const Vec3 tangent = normalize(across);
-  return {tangent, cross_rounded(n, tangent), n};
+  return {tangent, glm::cross(n, tangent), n};
 }
 
 }  // namespace pt

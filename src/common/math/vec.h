@@ -20,12 +20,10 @@ inline constexpr float inverse_pi = 0.31830988618379f;
 inline constexpr float half_ulp = 5.9604645e-8f;     ///< 2^-24: rounding error of one operation
 inline constexpr float one_minus_ulp = 0.99999994f;  ///< the largest float below 1
 
-// Sums of products whose roundings are written out. Which product of a sum the compiler fuses
-// depends on what else it finds in the kernel, so these are what physics is made of: a mode, or
-// a way of traversing, cannot change a bit.
+// Sums of products, fused on CUDA.
 
 PT_HD float dot(const Vec3& a, const Vec3& b) {
-  return fused_multiply_add(a.x, b.x, fused_multiply_add(a.y, b.y, multiply_rounded(a.z, b.z)));
+  return fused_multiply_add(a.x, b.x, fused_multiply_add(a.y, b.y, a.z * b.z));
 }
 
 /// a + t b.
@@ -37,51 +35,33 @@ PT_HD Vec3 add_scaled(const Vec3& a, float t, const Vec3& b) {
 /// w.x a + w.y b + w.z c.
 PT_HD Vec3 weighted_sum(const Vec3& w, const Vec3& a, const Vec3& b, const Vec3& c) {
   const auto sum = [&w](float p, float q, float r) {
-    return fused_multiply_add(w.x, p, fused_multiply_add(w.y, q, multiply_rounded(w.z, r)));
+    return fused_multiply_add(w.x, p, fused_multiply_add(w.y, q, w.z * r));
   };
   return {sum(a.x, b.x, c.x), sum(a.y, b.y, c.y), sum(a.z, b.z, c.z)};
 }
 
-/// v / |v|; each component ends in a rounded product (see platform.h).
+/// v / |v|.
 PT_HD Vec3 normalize(const Vec3& v) {
   const float scale = inverse_sqrt(dot(v, v));
-  return {multiply_rounded(v.x, scale), multiply_rounded(v.y, scale), multiply_rounded(v.z, scale)};
+  return {v.x * scale, v.y * scale, v.z * scale};
 }
 
 PT_HD Vec3 optimization_barrier(const Vec3& v) {
   return {optimization_barrier(v.x), optimization_barrier(v.y), optimization_barrier(v.z)};
 }
 
-PT_HD Color multiply_rounded(const Color& a, const Color& b) {
-  return {multiply_rounded(a.x, b.x), multiply_rounded(a.y, b.y), multiply_rounded(a.z, b.z)};
-}
-
-PT_HD Color add_rounded(const Color& a, const Color& b) {
-  return {add_rounded(a.x, b.x), add_rounded(a.y, b.y), add_rounded(a.z, b.z)};
-}
-
 PT_HD Color divide(const Color& a, float b) {
   return {divide(a.x, b), divide(a.y, b), divide(a.z, b)};
 }
 
-/// a + t (b - a), rounded alike in every kernel.
+/// a + t (b - a).
 PT_HD float interpolate(float a, float b, float t) { return fused_multiply_add(t, b - a, a); }
 PT_HD Color interpolate(const Color& a, const Color& b, float t) {
   return {interpolate(a.x, b.x, t), interpolate(a.y, b.y, t), interpolate(a.z, b.z, t)};
 }
 
-/// The cross product without fused operations: where its two products are equal, a component is 0
-/// on every device. make_frame turns about at a sign, so a residue of rounding would turn the
-/// frames of axis-parallel walls.
-PT_HD Vec3 cross_rounded(const Vec3& a, const Vec3& b) {
-  const auto minus = [](float p, float q, float r, float s) {
-    return add_rounded(multiply_rounded(p, q), -multiply_rounded(r, s));
-  };
-  return {minus(a.y, b.z, a.z, b.y), minus(a.z, b.x, a.x, b.z), minus(a.x, b.y, a.y, b.x)};
-}
-
 /// The mean of the three channels.
-PT_HD float mean(const Color& c) { return multiply_rounded(c.x + c.y + c.z, 1.0f / 3.0f); }
+PT_HD float mean(const Color& c) { return (c.x + c.y + c.z) * (1.0f / 3.0f); }
 
 PT_HD bool is_black(const Color& c) { return c.x == 0.0f && c.y == 0.0f && c.z == 0.0f; }
 

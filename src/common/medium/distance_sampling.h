@@ -28,12 +28,12 @@ struct ChannelDensities {
   /// Adds an event that the channels sample with these densities. Returns its weight: `value` over
   /// the mean density.
   PT_HD Color weigh(const Color& value, const Color& densities) {
-    const Color weighted = multiply_rounded(all(), densities);
+    const Color weighted = all() * densities;
     const float sum = mean(weighted);
     if (!(sum > 0.0f)) return Color(0.0f);
     const Color inverse(divide(1.0f, sum));
-    red = multiply_rounded(weighted.x, inverse.x), green = multiply_rounded(weighted.y, inverse.x);
-    return multiply_rounded(value, inverse);
+    red = weighted.x * inverse.x, green = weighted.y * inverse.x;
+    return value * inverse;
   }
 };
 
@@ -71,9 +71,8 @@ class Equiangular {
   /// Density of a distance t.
   PT_HD float pdf(float t) const {
     const float from_nearest = t - nearest_;
-    const float square =
-        fused_multiply_add(distance_, distance_, multiply_rounded(from_nearest, from_nearest));
-    return divide(distance_, multiply_rounded(angle_, square));
+    const float square = fused_multiply_add(distance_, distance_, from_nearest * from_nearest);
+    return divide(distance_, angle_ * square);
   }
 
  private:

@@ -35,8 +35,8 @@ PT_HD FlightEvent fly_homogeneous(const Color& extinction, float t_max, float u_
   flight.t = fminf(distance, t_max);
   if (!is_grey(extinction)) {  // else the weight is 1
     Color density = transmittance(extinction, flight.t);
-    if (collides) density = multiply_rounded(density, extinction);
-    beta = multiply_rounded(beta, densities.weigh(density, density));
+    if (collides) density *= extinction;
+    beta *= densities.weigh(density, density);
   }
   return collides ? FlightEvent::collides : FlightEvent::arrives;
 }
@@ -54,13 +54,12 @@ PT_HD FlightEvent fly_homogeneous(const Color& extinction, float t_max, const Eq
   const bool collides = is_equiangular || distance < t_max;
   flight.t = fminf(distance, t_max);
   Color value = transmittance(extinction, flight.t);
-  Color density = multiply_rounded(value, Color(1.0f - share));
+  Color density = value * Color(1.0f - share);
   if (collides) {
-    value = multiply_rounded(value, extinction);
-    density = add_rounded(multiply_rounded(density, extinction),
-                          Color(multiply_rounded(share, towards.pdf(flight.t))));
+    value *= extinction;
+    density = density * extinction + Color(share * towards.pdf(flight.t));
   }
-  beta = multiply_rounded(beta, densities.weigh(value, density));
+  beta *= densities.weigh(value, density);
   return collides ? FlightEvent::collides : FlightEvent::arrives;
 }
 
@@ -93,22 +92,20 @@ PT_HD FlightEvent end_walk(const VolumeGrids& grids, const Medium& medium, const
   if (walk.arrives) {
     if (!same_for_all) {
       const Color arrived = transmittance(medium.extinction, walk.depth);
-      beta = multiply_rounded(beta, densities.weigh(arrived, arrived));
+      beta *= densities.weigh(arrived, arrived);
     }
     return FlightEvent::arrives;
   }
   const Color density =
       sample_grid<has_sparse>(grids, grid, add_scaled(ray.origin, walk.t, ray.direction));
   const float inverse = divide(1.0f, walk.majorant);
-  const Color there(fminf(multiply_rounded(density.x, inverse), 1.0f),
-                    fminf(multiply_rounded(density.y, inverse), 1.0f),
-                    fminf(multiply_rounded(density.z, inverse), 1.0f));
+  const Color there(fminf(density.x * inverse, 1.0f), fminf(density.y * inverse, 1.0f),
+                    fminf(density.z * inverse, 1.0f));
   const bool collides = draw.unit(2) < channel(there, draw.channel);
   if (!same_for_all) {
-    const Color reached =
-        multiply_rounded(transmittance(medium.extinction, walk.depth), medium.extinction);
-    const Color event = multiply_rounded(reached, collides ? there : Color(1.0f) - there);
-    beta = multiply_rounded(beta, densities.weigh(event, event));
+    const Color reached = transmittance(medium.extinction, walk.depth) * medium.extinction;
+    const Color event = reached * (collides ? there : Color(1.0f) - there);
+    beta *= densities.weigh(event, event);
   }
   if (collides) return FlightEvent::collides;
   ++flight.collisions;
@@ -138,7 +135,7 @@ PT_HD Color estimate_transmittance(const VolumeGrids& grids, const Medium& mediu
   const Color& e = medium.extinction;
   const float largest = fmaxf(fmaxf(e.x, e.y), e.z);
   if (!(largest > 0.0f)) return Color(1.0f);
-  const Color relative = multiply_rounded(e, Color(divide(1.0f, largest)));
+  const Color relative = e * Color(divide(1.0f, largest));
   Color estimate(1.0f);
   float t = 0.0f;
   for (std::uint32_t collisions = 0;; ++collisions) {
@@ -152,15 +149,13 @@ PT_HD Color estimate_transmittance(const VolumeGrids& grids, const Medium& mediu
         sample_grid<has_sparse>(grids, grid, add_scaled(ray.origin, t, ray.direction));
     const float inverse = divide(1.0f, walk.majorant);
     const auto missed = [&](float of_density, float of_channel) {
-      return fmaxf(1.0f - multiply_rounded(multiply_rounded(of_density, inverse), of_channel),
-                   0.0f);
+      return fmaxf(1.0f - of_density * inverse * of_channel, 0.0f);
     };
-    estimate =
-        multiply_rounded(estimate, {missed(density.x, relative.x), missed(density.y, relative.y),
-                                    missed(density.z, relative.z)});
+    estimate *= Color(missed(density.x, relative.x), missed(density.y, relative.y),
+                      missed(density.z, relative.z));
     if (max_abs(estimate) < little) {
       if (!(to_unit_float(combine_hash(event, 1)) < survival)) return Color(0.0f);
-      estimate = multiply_rounded(estimate, Color(1.0f / survival));
+      estimate *= Color(1.0f / survival);
     }
   }
 }

@@ -27,14 +27,14 @@ class CellWalk {
   PT_HD CellWalk(const VolumeGrid& grid, const Ray& ray, float t_max) : last_(t_max) {
     const Vec3 size(static_cast<float>(grid.cells[0]), static_cast<float>(grid.cells[1]),
                     static_cast<float>(grid.cells[2]));
-    origin_ = multiply_rounded(grid.to_unit.point(ray.origin), size);
-    direction_ = multiply_rounded(grid.to_unit.vector(ray.direction), size);
+    origin_ = grid.to_unit.point(ray.origin) * size;
+    direction_ = grid.to_unit.vector(ray.direction) * size;
     const auto inverse_of = [](float d) { return fabsf(d) > 1e-20f ? divide(1.0f, d) : 0.0f; };
     inverse_ = {inverse_of(direction_.x), inverse_of(direction_.y), inverse_of(direction_.z)};
     if (grid.ends == 0 && t_max < infinite_distance) return;
     const auto clip = [&](float from, float inverse_way, float length) {
-      const float a = multiply_rounded(-from, inverse_way);
-      const float b = multiply_rounded(length - from, inverse_way);
+      const float a = -from * inverse_way;
+      const float b = (length - from) * inverse_way;
       const bool is_beside = inverse_way == 0.0f && !(from >= 0.0f && from <= length);
       if (inverse_way != 0.0f)
         first_ = fmaxf(first_, fminf(a, b)), last_ = fminf(last_, fmaxf(a, b));
@@ -156,7 +156,7 @@ class CellWalk {
                             float inverse_way) {
     const bool ends = inverse_way > 0.0f ? cell + 1 < count : inverse_way < 0.0f && cell > 0;
     const float plane = static_cast<float>(cell + (inverse_way > 0.0f ? 1 : 0));
-    return ends ? multiply_rounded(plane - from, inverse_way) : infinite_distance;
+    return ends ? (plane - from) * inverse_way : infinite_distance;
   }
 
   // The ray, in units of cells; 0 is the inverse of a direction of 0:

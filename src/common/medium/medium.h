@@ -87,9 +87,8 @@ struct Media {
 
 /// exp(-extinction * length); `length` may be infinite_distance.
 PT_HD Color transmittance(const Color& extinction, float length) {
-  return {expf(-multiply_rounded(extinction.x, length)),
-          expf(-multiply_rounded(extinction.y, length)),
-          expf(-multiply_rounded(extinction.z, length))};
+  return {expf(-(extinction.x * length)), expf(-(extinction.y * length)),
+          expf(-(extinction.z * length))};
 }
 
 }  // namespace pt

@@ -104,16 +104,14 @@ PT_HD Color sample_grid(const VolumeGrids& grids, const VolumeGrid& grid, const 
 template <bool has_sparse = false>
 PT_HD Color albedo_at(const VolumeGrids& grids, const Medium& medium, const Vec3& point) {
   if (medium.albedo_grid == no_grid) return medium.albedo;
-  return multiply_rounded(medium.albedo,
-                          sample_grid<has_sparse>(grids, grids.grids[medium.albedo_grid], point));
+  return medium.albedo * sample_grid<has_sparse>(grids, grids.grids[medium.albedo_grid], point);
 }
 
 /// The radiance of the absorbing matter at a point.
 template <bool has_sparse = false>
 PT_HD Color emission_at(const VolumeGrids& grids, const Medium& medium, const Vec3& point) {
   if (medium.emission_grid == no_grid) return medium.emission;
-  return multiply_rounded(medium.emission,
-                          sample_grid<has_sparse>(grids, grids.grids[medium.emission_grid], point));
+  return medium.emission * sample_grid<has_sparse>(grids, grids.grids[medium.emission_grid], point);
 }
 
 }  // namespace pt

@@ -25,7 +25,7 @@ PT_HD float value_in(const SparseLeaf& leaf, std::uint32_t n) {
   if (!head.mValueMask.isOn(n)) return 0.0f;
   const std::uint32_t bit = n << log2_bits, mask = (1u << (1u << log2_bits)) - 1;
   const auto code = static_cast<float>(words[bit >> 5] >> (bit & 31) & mask);
-  return add_rounded(multiply_rounded(code, head.mQuantum), head.mMinimum);
+  return code * head.mQuantum + head.mMinimum;
 }
 
 /// The values of eight voxels: x varies fastest, then y.

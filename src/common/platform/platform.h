@@ -190,7 +190,7 @@ PT_HD float divide(float a, float b) {
 #ifdef __CUDA_ARCH__
   const float start = approximate_inverse(b);
   const float inverse = __fmaf_rn(start, __fmaf_rn(-b, start, 1.0f), start);
-  float q = __fmul_rn(a, inverse);
+  float q = a * inverse;
   q = __fmaf_rn(inverse, __fmaf_rn(-b, q, a), q);
   q = __fmaf_rn(inverse, __fmaf_rn(-b, q, a), q);
   return q == q ? q : a * start;  // by 0, or by what is infinite
@@ -203,7 +203,7 @@ PT_HD float divide(float a, float b) {
 /// without branches.
 PT_HD float square_root(float x) {
 #ifdef __CUDA_ARCH__
-  const float inverse = inverse_sqrt_of_normal(x), root = __fmul_rn(x, inverse);
+  const float inverse = inverse_sqrt_of_normal(x), root = x * inverse;
   const float result = __fmaf_rn(__fmaf_rn(-root, root, x), 0.5f * inverse, root);
   return fabsf(x) < 1.17549435e-38f ? 0.0f : result;
 #else
@@ -211,46 +211,8 @@ PT_HD float square_root(float x) {
 #endif
 }
 
-// A compiler may contract a product and a sum into one fused operation, and may do so in one kernel
-// and not in another. The wavefront stores a path's state where the megakernel keeps it in
-// registers, so a value that crosses a stage's border must end in an operation that is never fused
-// with the next one. See docs/design/bit_equality.md, 'Rounding'.
-
-/// a * b, rounded, never part of a fused operation.
-PT_HD float multiply_rounded(float a, float b) {
-#ifdef __CUDA_ARCH__
-  return __fmul_rn(a, b);
-#else
-  return a * b;  // the CPU is compiled with -ffp-contract=off
-#endif
-}
-
-PT_HD double multiply_rounded(double a, double b) {
-#ifdef __CUDA_ARCH__
-  return __dmul_rn(a, b);
-#else
-  return a * b;
-#endif
-}
-
-/// a + b, rounded, never part of a fused operation.
-PT_HD float add_rounded(float a, float b) {
-#ifdef __CUDA_ARCH__
-  return __fadd_rn(a, b);
-#else
-  return a + b;
-#endif
-}
-PT_HD double add_rounded(double a, double b) {
-#ifdef __CUDA_ARCH__
-  return __dadd_rn(a, b);
-#else
-  return a + b;
-#endif
-}
-
-/// a * b + c: one rounding on CUDA, two on the CPU, whose baseline has no such instruction. Never
-/// contracted differently from one kernel to the next.
+/// a * b + c: one rounding on CUDA, two on the CPU, whose baseline has no such instruction. No
+/// compiler fuses a product and a sum by itself: docs/design/bit_equality.md, 'Rounding'.
 PT_HD float fused_multiply_add(float a, float b, float c) {
 #ifdef __CUDA_ARCH__
   return __fmaf_rn(a, b, c);
@@ -265,8 +227,8 @@ PT_HD float fused_multiply_add(float a, float b, float c) {
 /// the CPU doubles hold both products exactly.
 PT_HD float difference_of_products(float a, float b, float c, float d) {
 #ifdef __CUDA_ARCH__
-  const float cd = __fmul_rn(c, d);
-  return __fadd_rn(__fmaf_rn(a, b, -cd), __fmaf_rn(-c, d, cd));
+  const float cd = c * d;
+  return __fmaf_rn(a, b, -cd) + __fmaf_rn(-c, d, cd);
 #else
   return static_cast<float>(static_cast<double>(a) * b - static_cast<double>(c) * d);
 #endif
@@ -275,7 +237,7 @@ PT_HD float difference_of_products(float a, float b, float c, float d) {
 /// a * b + c * d + e * f with three roundings on CUDA, and one on the CPU.
 PT_HD float sum_of_products(float a, float b, float c, float d, float e, float f) {
 #ifdef __CUDA_ARCH__
-  return __fmaf_rn(a, b, __fmaf_rn(c, d, __fmul_rn(e, f)));
+  return __fmaf_rn(a, b, __fmaf_rn(c, d, e * f));
 #else
   return static_cast<float>(static_cast<double>(a) * b + static_cast<double>(c) * d +
                             static_cast<double>(e) * f);

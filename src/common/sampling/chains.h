@@ -25,10 +25,10 @@ inline MutationSize mutation_size(float largest) { return {std::log2(largest), 4
 PT_HD float mutate(float x, float u, const MutationSize& size) {
   const bool down = u >= 0.5f;
   const float v = down ? 2.0f * u - 1.0f : 2.0f * u;
-  const float step = exp2f(add_rounded(size.log2_largest, -multiply_rounded(v, size.octaves)));
-  float result = add_rounded(x, down ? -step : step);
-  if (result < 0.0f) result = add_rounded(result, 1.0f);
-  if (result >= 1.0f) result = add_rounded(result, -1.0f);
+  const float step = exp2f(size.log2_largest - v * size.octaves);
+  float result = x + (down ? -step : step);
+  if (result < 0.0f) result += 1.0f;
+  if (result >= 1.0f) result -= 1.0f;
   return fminf(fmaxf(result, 0.0f), one_minus_ulp);
 }
 
@@ -63,8 +63,8 @@ struct ChainWindow {
   /// The first two numbers of block 0 are a point of the window: a pixel, and what is left over
   /// for the position in it, within the precision of a float.
   PT_HD PixelPoint point_of(const Vec4& u) const {
-    const float along_x = multiply_rounded(u.x, static_cast<float>(width));
-    const float along_y = multiply_rounded(u.y, static_cast<float>(height));
+    const float along_x = u.x * static_cast<float>(width);
+    const float along_y = u.y * static_cast<float>(height);
     const std::uint32_t column = least(static_cast<std::uint32_t>(along_x), width - 1);
     const std::uint32_t row = least(static_cast<std::uint32_t>(along_y), height - 1);
     return {(x + column) | (y + row) << 16,

@@ -12,7 +12,7 @@ PT_HD float power_heuristic(float chosen, float other) {
   if (chosen <= 0.0f) return 0.0f;
   const float ratio =
       divide(other, chosen);  // squared by itself, a density could leave float's range
-  return divide(1.0f, 1.0f + multiply_rounded(ratio, ratio));
+  return divide(1.0f, 1.0f + ratio * ratio);
 }
 
 PT_HD float balance_heuristic(float chosen, float other) {

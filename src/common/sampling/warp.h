@@ -47,7 +47,7 @@ PT_HD Vec3 sample_cosine_hemisphere(float u0, float u1) {
   return {disk.x, disk.y, fast_sqrt(1.0f - u0)};
 }
 
-PT_HD float cosine_hemisphere_pdf(float cosine) { return multiply_rounded(cosine, inverse_pi); }
+PT_HD float cosine_hemisphere_pdf(float cosine) { return cosine * inverse_pi; }
 
 /// Cosine-distributed around the unit vector `n`; density cos(theta) / pi. The sum of the normal
 /// and a uniform point on the sphere has exactly this direction, and needs no frame.

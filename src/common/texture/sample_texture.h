@@ -16,8 +16,8 @@ namespace pt {
 /// a bilinear lookup cost a GPU's L1 cache, which traversal keeps busy, more than 84 fused
 /// operations cost its arithmetic.
 PT_HD float srgb_to_linear(std::uint32_t byte) {
-  const float c = multiply_rounded(static_cast<float>(byte), 1.0f / 255.0f);
-  if (byte <= 10) return multiply_rounded(c, 1.0f / 12.92f);
+  const float c = static_cast<float>(byte) * (1.0f / 255.0f);
+  if (byte <= 10) return c * (1.0f / 12.92f);
   float sum = 0.09612036496400833f;
   sum = fused_multiply_add(sum, c, -0.39592963457107544f);
   sum = fused_multiply_add(sum, c, 0.7066987752914429f);
@@ -33,7 +33,7 @@ PT_HD float grey_of(const Color& c) { return dot(c, Vec3(0.212671f, 0.715160f, 0
 
 /// A coordinate brought into [0, 1]; one that is not a number becomes 0.
 PT_HD float wrap_coordinate(float t, TextureWrap wrap) {
-  if (wrap == TextureWrap::repeat) t = t - floorf(t);
+  if (wrap == TextureWrap::repeat) t -= floorf(t);
   if (wrap == TextureWrap::mirror) {
     t = t - 2.0f * floorf(0.5f * t);  // exact products
     if (t > 1.0f) t = 2.0f - t;
@@ -56,11 +56,10 @@ PT_HD Color load_texel(const Texture& texture, const std::byte* texels, std::uin
   }
   constexpr float scale = 1.0f / 255.0f;
   if (texture.format == TextureFormat::alpha8) {
-    return Color(multiply_rounded(static_cast<float>(rgba >> 24), scale));
+    return Color(static_cast<float>(rgba >> 24) * scale);
   }
-  return {multiply_rounded(static_cast<float>(r), scale),
-          multiply_rounded(static_cast<float>(g), scale),
-          multiply_rounded(static_cast<float>(b), scale)};
+  return {static_cast<float>(r) * scale, static_cast<float>(g) * scale,
+          static_cast<float>(b) * scale};
 }
 
 /// The two texels next to a coordinate in [0, 1] of an axis with `size` texels, and how far it lies
@@ -83,7 +82,7 @@ PT_HD TexelPair find_texels(float coordinate, std::uint32_t size, TextureWrap wr
 }
 
 PT_HD std::uint32_t nearest_texel(float coordinate, std::uint32_t size) {
-  const auto i = static_cast<std::uint32_t>(multiply_rounded(coordinate, static_cast<float>(size)));
+  const auto i = static_cast<std::uint32_t>(coordinate * static_cast<float>(size));
   return i < size ? i : size - 1;
 }
 
@@ -126,7 +125,7 @@ PT_HD Vec2 map_coordinates(const Texture& texture, const Vec2& uv) {
 PT_HD Color sample_texture(const Texture& texture, const std::byte* texels, const Vec2& uv) {
   const Vec2 mapped = map_coordinates(texture, uv);
   if (texture.kind == TextureKind::checkerboard) return sample_checkerboard(texture, mapped);
-  return multiply_rounded(sample_image(texture, texels, mapped), texture.color0);
+  return sample_image(texture, texels, mapped) * texture.color0;
 }
 
 /// The same of any of the scene's textures, by its index. What a checkerboard names has its own
@@ -139,10 +138,10 @@ PT_HD Color sample_texture(const Texture* textures, std::uint32_t texture_index,
     const bool first = is_first_square(map_coordinates(*texture, uv));
     const std::uint32_t nested = texture->nested[first ? 0 : 1];
     if (nested == no_texture) break;
-    factor = multiply_rounded(factor, first ? texture->color0 : texture->color1);
+    factor *= first ? texture->color0 : texture->color1;
     texture = &textures[nested];
   }
-  return multiply_rounded(factor, sample_texture(*texture, texels, uv));
+  return factor * sample_texture(*texture, texels, uv);
 }
 
 /// The height of a texel in a bump map.

@@ -114,10 +114,10 @@ PT_HD ViewThroughMedia look_through_media(const Scene& scene, const Ray& camera_
       view.collides = true, view.collision = view.distance + end.t;
     }
     if (path.medium.id != no_medium) {
-      view.transmittance = multiply_rounded(
-          view.transmittance, estimate_transmittance<Traits::has_sparse>(
-                                  scene.grids, load_wide(scene.media.at(path.medium.id)), view.ray,
-                                  view.hit.t, combine_hash(ray_key, 1)));
+      view.transmittance =
+          view.transmittance * (estimate_transmittance<Traits::has_sparse>(
+                                   scene.grids, load_wide(scene.media.at(path.medium.id)), view.ray,
+                                   view.hit.t, combine_hash(ray_key, 1)));
     }
     if (view.hit.is_miss()) return view;
     const std::uint32_t index = material_index_at(scene, view.hit);

@@ -70,7 +70,7 @@ struct PathSettings {
 PT_HD void play_roulette(Color& beta, float u, float eta_scale = 1.0f) {
   const float survival = fminf(fmaxf(fmaxf(beta.x, beta.y), beta.z) * eta_scale, 0.95f);
   const float scale = u < survival ? divide(1.0f, survival) : 0.0f;
-  beta = multiply_rounded(beta, Color(scale));
+  beta *= Color(scale);
 }
 
 }  // namespace pt

@@ -124,18 +124,16 @@ struct PathRegisters {
   Ray& ray;            ///< the path's next one
   bool alive = false;  ///< whether there is one
 
-  PT_HD void emit(const PathState&, const Color& emitted) {
-    radiance = add_rounded(radiance, emitted);
-  }
+  PT_HD void emit(const PathState&, const Color& emitted) { radiance += emitted; }
   PT_HD void cast(const PathState& path, const ShadowRay& shadow) {
     const std::uint32_t key = shadow_ray_key(scene, path_key(), path.rays);
     if constexpr (Traits::has_media) {
       const Color transmittance = shadow_transmittance<Traits>(scene, shadow, key, path.time);
-      radiance = add_rounded(radiance, multiply_rounded(shadow.radiance, transmittance));
+      radiance = radiance + shadow.radiance * transmittance;
       return;
     }
     if (!intersect_shadow<Traits>(scene, shadow, key, path.time)) {
-      radiance = add_rounded(radiance, shadow.radiance);
+      radiance += shadow.radiance;
     }
   }
   /// Without a branch: else the old ray would have to live until the end of shading, which takes

@@ -36,7 +36,7 @@ PT_HD Vec3 mapped_normal(const Texture* textures, const std::byte* texels, const
     const auto along = [&](const Vec3& dp, float height) {
       return Vec3(dot(frame.s, dp), dot(frame.t, dp), height);
     };
-    const Vec3 n = cross_rounded(along(surface.dp_du, slope.x), along(surface.dp_dv, slope.y));
+    const Vec3 n = glm::cross(along(surface.dp_du, slope.x), along(surface.dp_dv, slope.y));
     return n.z < 0.0f ? -n : n;
   }
   Vec3 n = 2.0f * sample_texture(textures, map.texture, texels, surface.uv) - Vec3(1.0f);
@@ -121,7 +121,7 @@ PT_HD float map_visibility(const Surface& surface, const Vec3& wi, float cos_the
   if (surface.map_roughness2 < 0.0f) return 1.0f;  // no map
   const float base = dot(wi, surface.base_normal);
   if (!(base * cos_theta > 0.0f)) return 0.0f;
-  const float tangent2 = fmaxf(1.0f / multiply_rounded(base, base) - 1.0f, 0.0f);
+  const float tangent2 = fmaxf(1.0f / (base * base) - 1.0f, 0.0f);
   return 2.0f / (1.0f + fast_sqrt(fused_multiply_add(surface.map_roughness2, tangent2, 1.0f)));
 }
 

@@ -21,7 +21,7 @@ struct PlainDirections {
     if (!transmits && !same_side(wo, wi)) return 0.0f;
     const float density =
         how == DirectionSampling::cosine ? cosine_hemisphere_pdf(fabsf(wi.z)) : unit_hemisphere_pdf;
-    return multiply_rounded(density, share);
+    return density * share;
   }
 
   PT_HD static Vec3 sample(DirectionSampling how, const Vec3& wo, const Vec3& u) {

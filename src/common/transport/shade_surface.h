@@ -48,7 +48,7 @@ PT_HD Color emitted_radiance(const Scene& scene, const Ray& ray, const Hit& hit,
     Ray seen = ray;
     Hit from_there = hit;
     seen.origin = add_scaled(ray.origin, -path.medium.travelled, ray.direction);
-    from_there.t = add_rounded(hit.t, path.medium.travelled);
+    from_there.t = hit.t + path.medium.travelled;
     pdf = light_pdf<Traits>(scene, seen, path.receiver, from_there, path.time);
   } else {
     pdf = light_pdf<Traits>(scene, ray, path.receiver, hit, path.time);
@@ -67,9 +67,7 @@ PT_HD ShadowRay spawn_shadow_ray(const SurfacePoint& point, const Vec3& from,
   const float distance2 = dot(way, way);
   if (!(distance2 > 0.0f)) return {};
   const float inverse = inverse_sqrt(distance2);
-  return {{origin, multiply_rounded(way, Vec3(inverse))},
-          multiply_rounded(distance2, inverse),
-          radiance};
+  return {{origin, way * inverse}, distance2 * inverse, radiance};
 }
 
 /// The contribution of a sampled light (next-event estimation), given the BSDF's value and density
@@ -146,7 +144,7 @@ PT_HD_IN_KERNEL Scattering pass_boundary(const Scene& scene, const Ray& ray, con
                                          PathState& path) {
   const BoundaryCrossing crossing = cross_boundary(scene, ray, surface, path.medium.id);
   path.medium.id = crossing.medium_id;
-  path.medium.travelled = add_rounded(path.medium.travelled, crossing.length);
+  path.medium.travelled += crossing.length;
   ++path.medium.interface_crossings;
   Scattering result;
   result.alive = !is_black(path.beta);
@@ -184,7 +182,7 @@ PT_HD_IN_KERNEL Scattering surface_scattering(const Scene& scene, const Ray& ray
       // By the number that decides it in ThinDielectric::sample().
       const float cosine = dot(ray.direction, surface.shading_normal);
       if (!(policy.scatter().z < pane.reflectance(cosine))) {
-        path.beta = multiply_rounded(path.beta, pane.passed);
+        path.beta *= pane.passed;
         return pass_boundary(scene, ray, surface, path);
       }
     }
@@ -257,7 +255,7 @@ PT_HD_IN_KERNEL Scattering surface_scattering(const Scene& scene, const Ray& ray
     set_lanes(result.shadow.ray, lanes_of(ray).of_shadow_ray());
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
   }
-  path.beta = multiply_rounded(path.beta, next.weight);
+  path.beta *= next.weight;
   if (settings.is_roulette(path.rays)) play_roulette(path.beta, choice, next.eta_scale);
   result.alive = !is_black(path.beta);
   result.ray = spawn_ray(surface.point, normalize(wi));

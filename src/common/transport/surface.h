@@ -178,7 +178,7 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
   // The next intersection rounds relative to where the vertices lie as seen from the new origin.
   Vec3 size = glm::max(glm::max(glm::abs(triangle.v0 - position), glm::abs(triangle.v1 - position)),
                        glm::abs(triangle.v2 - position));
-  Vec3 normal = cross_rounded(triangle.v1 - triangle.v0, triangle.v2 - triangle.v0);
+  Vec3 normal = glm::cross(triangle.v1 - triangle.v0, triangle.v2 - triangle.v0);
   Vec3 shading_normal = has_normals ? corners.normal_at(b) : normal;
   if (placed) {
     const Affine to_world = to_world_at<Traits>(scene, instance.index, time);

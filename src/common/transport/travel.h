@@ -99,7 +99,7 @@ PT_HD_IN_KERNEL Scattering medium_scattering(const Scene& scene, const Ray& ray,
       emission_at<Traits::has_sparse>(scene.grids, medium, point) * (Color(1.0f) - albedo);
   result.emitted = policy.emit(path.beta * emission);
   if (path.depth<Traits>() >= settings.max_depth || is_black(albedo)) return result;
-  path.beta = multiply_rounded(path.beta, albedo);
+  path.beta *= albedo;
   path.receiver = {};
   IncidentLight incident;
   if (settings.nee) {
@@ -119,10 +119,8 @@ PT_HD_IN_KERNEL Scattering medium_scattering(const Scene& scene, const Ray& ray,
   const float distance2 = dot(incident.end, incident.end);
   if (!is_black(radiance) && distance2 > 0.0f) {
     const float inverse = inverse_sqrt(distance2);
-    result.shadow = {{point, multiply_rounded(incident.end, Vec3(inverse))},
-                     multiply_rounded(distance2, inverse),
-                     radiance,
-                     path.medium.id};
+    result.shadow = {
+        {point, incident.end * inverse}, distance2 * inverse, radiance, path.medium.id};
     set_lanes(result.shadow.ray, lanes_of(ray).of_shadow_ray());
     ++path.shadow_rays;
   }
@@ -166,14 +164,14 @@ PT_HD Color shadow_transmittance(const Scene& scene, const ShadowRay& shadow, st
     }
     if (medium_id != no_medium) {
       const float length = arrives ? left : hit.t;
-      result = multiply_rounded(result, segment_transmittance<Traits::has_sparse>(
-                                            scene, medium_id, ray, length, ray_key, segment));
+      result *= segment_transmittance<Traits::has_sparse>(scene, medium_id, ray, length, ray_key,
+                                                          segment);
     }
     if (arrives || is_black(result)) return result;
     const Surface surface = surface_at<ShadingTraits<Traits>>(scene, ray, hit, time);
     if (is_pane(surface.material)) {
       const float cosine = dot(ray.direction, surface.shading_normal);
-      result = multiply_rounded(result, pane_at(scene, surface).transmittance(cosine));
+      result *= pane_at(scene, surface).transmittance(cosine);
     }
     const BoundaryCrossing crossing = cross_boundary(scene, ray, surface, medium_id);
     medium_id = crossing.medium_id;

@@ -239,7 +239,7 @@ struct PathPool {
   }
   PT_HD void dim_shadow(std::uint32_t slot, const Color& transmittance) const {
     const PathRecord r = load_wide(at(shadow_radiance, slot));
-    store_wide(at(shadow_radiance, slot), pack(multiply_rounded(vec(r), transmittance), r.w));
+    store_wide(at(shadow_radiance, slot), pack(vec(r) * transmittance, r.w));
   }
   /// The rays that the path had traced when it cast the shadow ray.
   PT_HD std::uint32_t load_shadow_rays(std::uint32_t slot) const {
@@ -318,7 +318,7 @@ PT_HD void add_radiance(const SampleBuffer& samples, std::uint32_t path_index,
                         const Color& radiance) {
   if (is_black(radiance)) return;
   Color& sum = samples.samples[path_index].radiance;
-  sum = add_rounded(sum, radiance);
+  sum += radiance;
 }
 
 }  // namespace pt

@@ -92,8 +92,8 @@ PT_OPTIX_FUNCTION bool offer_sphere(const OptixScene& scene, const Ray& ray, std
   if constexpr (Query::has_masks) {
     if (query.hides_sphere(sphere)) return false;
   }
-  return query.offer_sphere(
-      written_sphere_distance(load_wide(&scene.primitives.spheres[sphere]), ray), sphere);
+  return query.offer_sphere(sphere_distance(load_wide(&scene.primitives.spheres[sphere]), ray),
+                            sphere);
 }
 
 /// Offers what OptiX names, in a program for spheres or for triangles.
@@ -130,8 +130,8 @@ PT_OPTIX_FUNCTION void intersect_any_box(const OptixScene& scene) {
 /// Where OptiX decides: it takes the distance for its own.
 template <class Api>
 PT_OPTIX_FUNCTION void report_sphere(const OptixScene& scene) {
-  const float t = written_sphere_distance(
-      load_wide(&scene.primitives.spheres[Api::primitive_index()]), load_ray<Api>());
+  const float t = sphere_distance(load_wide(&scene.primitives.spheres[Api::primitive_index()]),
+                                  load_ray<Api>());
   if (t > 0.0f) Api::report_intersection(t);
 }
 

@@ -62,14 +62,12 @@ struct MapPoint {
 /// is not.
 PT_HD MapPoint environment_point(const Environment& env, const Vec3& direction) {
   const float azimuth = atan2f(direction.x, -direction.z);
-  const float from_axis = square_root(
-      fused_multiply_add(direction.x, direction.x, multiply_rounded(direction.z, direction.z)));
+  const float from_axis =
+      square_root(fused_multiply_add(direction.x, direction.x, direction.z * direction.z));
   const float from_zenith = atan2f(from_axis, direction.y);
   // Rounded: what comes next takes the whole part off, and might be fused with the product.
-  return {
-      multiply_rounded(fused_multiply_add(0.5f * inverse_pi, azimuth, 0.5f),
-                       static_cast<float>(env.width)),
-      multiply_rounded(multiply_rounded(inverse_pi, from_zenith), static_cast<float>(env.bands()))};
+  return {fused_multiply_add(0.5f * inverse_pi, azimuth, 0.5f) * static_cast<float>(env.width),
+          inverse_pi * from_zenith * static_cast<float>(env.bands())};
 }
 
 /// The index of the cell that contains the point.

@@ -21,7 +21,7 @@ struct SphereWorld {
 
   PT_HD void add(const Vec3& center, float radius, const MaterialDescription& material) {
     if (count == capacity) return;
-    spheres[count] = {center, multiply_rounded(radius, radius)};
+    spheres[count] = {center, radius * radius};
     materials[count] = material;
     ++count;
   }
@@ -43,9 +43,7 @@ class WorldRandom {
   }
 
   /// lo + u (hi - lo)
-  PT_HD float next(float lo, float hi) {
-    return add_rounded(lo, multiply_rounded(next(), hi - lo));
-  }
+  PT_HD float next(float lo, float hi) { return lo + next() * (hi - lo); }
 
  private:
   static constexpr std::uint32_t seed = 1984;  // the CUDA port's seed of its world
@@ -57,7 +55,7 @@ class WorldRandom {
 
 PT_HD Color random_diffuse_albedo(WorldRandom& random) {
   Color albedo;
-  for (int i = 0; i < 3; ++i) albedo[i] = multiply_rounded(random.next(), random.next());
+  for (int i = 0; i < 3; ++i) albedo[i] = random.next() * random.next();
   return albedo;
 }
 
@@ -75,8 +73,8 @@ PT_HD void add_ground(SphereWorld& world) {
 
 /// A sphere's height when it touches the ground sphere at horizontal distance (x, z).
 PT_HD float height_on_ground(float x, float z, float radius) {
-  const float distance2 = add_rounded(multiply_rounded(x, x), multiply_rounded(z, z));
-  return add_rounded(radius, -multiply_rounded(distance2, 0.5f / ground_radius));
+  const float distance2 = x * x + z * z;
+  return radius - distance2 * (0.5f / ground_radius);
 }
 
 /// The paper's scene: a ground and `count` random spheres, 70 % diffuse and 30 % metal. They are
@@ -84,12 +82,12 @@ PT_HD float height_on_ground(float x, float z, float radius) {
 /// number.
 PT_HD void create_spheres(SphereWorld& world, std::uint32_t count) {
   add_ground(world);
-  const float side = multiply_rounded(1.3f, sqrtf(static_cast<float>(count)));
+  const float side = 1.3f * sqrtf(static_cast<float>(count));
   for (std::uint32_t i = 0; i < count; ++i) {
     WorldRandom random(i);
     const float radius = random.next(0.2f, 0.45f);
-    const float x = multiply_rounded(add_rounded(to_unit_float(3242174889u * i), -0.5f), side);
-    const float z = multiply_rounded(add_rounded(to_unit_float(2447445414u * i), -0.5f), side);
+    const float x = (to_unit_float(3242174889u * i) - 0.5f) * side;
+    const float z = (to_unit_float(2447445414u * i) - 0.5f) * side;
     const bool metal = random.next() < 0.3f;
     world.add({x, height_on_ground(x, z, radius), z}, radius,
               metal ? random_metal(random) : make_diffuse(random_diffuse_albedo(random)));
@@ -103,12 +101,12 @@ PT_HD void create_rtow(SphereWorld& world) {
   for (int a = -11; a < 11; ++a) {
     for (int b = -11; b < 11; ++b) {
       WorldRandom random(static_cast<std::uint32_t>((a + 11) * 22 + b + 11));
-      const float x = add_rounded(static_cast<float>(a), multiply_rounded(0.9f, random.next()));
-      const float z = add_rounded(static_cast<float>(b), multiply_rounded(0.9f, random.next()));
+      const float x = static_cast<float>(a) + 0.9f * random.next();
+      const float z = static_cast<float>(b) + 0.9f * random.next();
       const float choice = random.next();
-      const float dx = add_rounded(x, -4.0f);
+      const float dx = x - 4.0f;
       // Not inside the large metal sphere.
-      if (add_rounded(multiply_rounded(dx, dx), multiply_rounded(z, z)) <= 0.81f) continue;
+      if (dx * dx + z * z <= 0.81f) continue;
       const MaterialDescription material = choice < 0.8f
                                                ? make_diffuse(random_diffuse_albedo(random))
                                            : choice < 0.95f ? random_metal(random)

@@ -32,7 +32,7 @@ struct CwbvhGrid {
   static constexpr float fit = 0.5f / 4096.0f;
 
  private:
-  PT_HD float coordinate_of(float x) const { return add_rounded(x, -origin) / step; }
+  PT_HD float coordinate_of(float x) const { return (x - origin) / step; }
 };
 
 /// A step of 16 significant bits, rounded to nearest; never 0.
@@ -44,7 +44,7 @@ PT_HD float round_cwbvh_step(float step) {
 /// A fine grid that covers [low, high], both of which lie on it, wherever a step can be found whose
 /// upper 24 bits say it well enough; |low|, |high| < 1e30.
 PT_HD CwbvhGrid make_cwbvh_grid(float low, float high) {
-  const float extent = add_rounded(high, -low);
+  const float extent = high - low;
   for (int last = 255; last >= 128; --last) {
     const auto count = static_cast<float>(last);
     const float step = round_cwbvh_step(extent / count);
@@ -93,14 +93,14 @@ struct CwbvhPlanes {
 
 PT_HD CwbvhPlanes find_cwbvh_planes(const CwbvhChildren& children, int axis, float extent) {
   constexpr float flat = 0.0002f;  // of the node's extent: as thick as margins may be, no more
-  const float near = multiply_rounded(extent, 1.0f / (255.0f * 4096.0f));
+  const float near = extent * (1.0f / (255.0f * 4096.0f));
   const int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
   CwbvhPlanes planes;
   for (const bool wants_flat : {true, false}) {
     for (int c = 0; c < children.count; ++c) {
       const Bounds& b = children.bounds[c];
       const Vec3 size = b.max - b.min;
-      const float face = multiply_rounded(size[u], size[v]);
+      const float face = size[u] * size[v];
       if ((size[axis] <= flat * extent) != wants_flat) continue;
       if (wants_flat) {
         planes.add(b.min[axis], b.max[axis], 2 * face, near, true);
@@ -127,9 +127,9 @@ PT_HD CwbvhGridValue value_of_grid(const CwbvhPlanes& planes, float sides, const
   float sum = 0;
   bool has_all = true;
   for (int i = 0; i < planes.count; ++i) {
-    const float a = add_rounded(planes.low[i], -grid.origin) / grid.step;
-    const float b = add_rounded(planes.high[i], -grid.origin) / grid.step;
-    const float q = floorf(fused_multiply_add(0.5f, add_rounded(a, b), 0.5f));
+    const float a = (planes.low[i] - grid.origin) / grid.step;
+    const float b = (planes.high[i] - grid.origin) / grid.step;
+    const float q = floorf(fused_multiply_add(0.5f, a + b, 0.5f));
     const float off = fmaxf(q - a, b - q);  // of the farther face, in steps
     if (off <= room) {
       sum = fused_multiply_add(planes.area[i],
@@ -138,7 +138,7 @@ PT_HD CwbvhGridValue value_of_grid(const CwbvhPlanes& planes, float sides, const
       has_all = false;
     }
   }
-  return {add_rounded(multiply_rounded(weight, sum), -multiply_rounded(grid.step, sides)), has_all};
+  return {weight * sum - grid.step * sides, has_all};
 }
 
 /// Offers grids with `plane` whose step is a part of the distance to `other`, down to a sixteenth
@@ -154,7 +154,7 @@ PT_HD void offer_common_grids(float plane, float other, float extent, Offer&& of
 /// planes of flat children, coarser if need be, where that is worth more.
 PT_HD CwbvhGrid fit_cwbvh_grid(const CwbvhChildren& children, int axis, float low, float high) {
   CwbvhGrid best = make_cwbvh_grid(low, high);
-  const float extent = add_rounded(high, -low);
+  const float extent = high - low;
   const CwbvhPlanes planes = find_cwbvh_planes(children, axis, extent);
   if (planes.count == 0) return best;
   float sides = 0, faces = 0;
@@ -170,10 +170,10 @@ PT_HD CwbvhGrid fit_cwbvh_grid(const CwbvhChildren& children, int axis, float lo
     const float step = round_cwbvh_step(wanted);
     constexpr float end =
         0.9f * CwbvhGrid::snap;  // how far beyond the grid an end may lie, in steps
-    const float below = ceilf(add_rounded(add_rounded(plane, -low) / step, -end));
+    const float below = ceilf((plane - low) / step - end);
     const CwbvhGrid grid = {fused_multiply_add(-below, step, plane), step};
-    if (add_rounded(grid.origin, -low) > end * step) return;
-    if (add_rounded(high, -grid.origin) / step > 255.0f + end) return;
+    if (grid.origin - low > end * step) return;
+    if ((high - grid.origin) / step > 255.0f + end) return;
     const float area = value_of_grid(planes, sides, grid).area;
     if (area > least) least = area, best = grid;
   };

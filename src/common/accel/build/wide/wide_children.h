@@ -17,7 +17,7 @@ PT_HD std::uint32_t wide_leaf_max(const TreeCosts& costs) {
 /// The cost of a subtree as a leaf of a wide node; infinite when it has too many triangles. Those
 /// of a leaf are tested side by side: two take the time of one.
 PT_HD float wide_leaf_cost(const TreeCosts& costs, float area, std::uint32_t count) {
-  return count <= wide_leaf_max(costs) ? multiply_rounded(area, costs.triangle) : HUGE_VALF;
+  return count <= wide_leaf_max(costs) ? area * costs.triangle : HUGE_VALF;
 }
 
 PT_HD CollapseTable primitive_table(const TreeCosts& costs, float area) {
@@ -38,7 +38,7 @@ PT_HD ChildSplit split_children(const CollapseTable& a, const CollapseTable& b, 
   PT_UNROLL(7)
   for (int k = 1; k < cwbvh_width; ++k) {
     if (k >= j) continue;
-    const float cost = add_rounded(a.cost[k - 1], b.cost[j - k - 1]);
+    const float cost = a.cost[k - 1] + b.cost[j - k - 1];
     if (cost < best.cost) best = {cost, k};
   }
   return best;
@@ -48,8 +48,7 @@ PT_HD ChildSplit split_children(const CollapseTable& a, const CollapseTable& b, 
 PT_HD CollapseTable join_tables(const TreeCosts& costs, const CollapseTable& a,
                                 const CollapseTable& b, float area, std::uint32_t count) {
   CollapseTable table;
-  const float inner =
-      add_rounded(split_children(a, b, cwbvh_width).cost, multiply_rounded(area, costs.node));
+  const float inner = split_children(a, b, cwbvh_width).cost + area * costs.node;
   table.cost[0] = fminf(inner, wide_leaf_cost(costs, area, count));
   PT_UNROLL(6)
   for (int j = 2; j < cwbvh_width; ++j) {
@@ -62,14 +61,12 @@ PT_HD CollapseTable join_tables(const TreeCosts& costs, const CollapseTable& a,
 /// The cost of a subtree as a leaf of a binary tree; infinite when it has too many triangles.
 /// costs.leaf_max < many_primitives.
 PT_HD float binary_leaf_cost(const TreeCosts& costs, float area, std::uint32_t count) {
-  return count <= costs.leaf_max
-             ? multiply_rounded(multiply_rounded(area, static_cast<float>(count)), costs.triangle)
-             : HUGE_VALF;
+  return count <= costs.leaf_max ? area * static_cast<float>(count) * costs.triangle : HUGE_VALF;
 }
 
 /// The least cost of the node that joins two subtrees of costs `a` and `b`, as a node or a leaf.
 PT_HD float binary_cost(const TreeCosts& costs, float a, float b, float area, std::uint32_t count) {
-  const float inner = add_rounded(add_rounded(a, b), multiply_rounded(area, costs.node));
+  const float inner = a + b + area * costs.node;
   return fminf(inner, binary_leaf_cost(costs, area, count));
 }
 
