@@ -10,7 +10,7 @@ import sys
 
 from lib import harness
 from lib.harness import Configuration, Experiment, Plot
-from lib.kernels import tracing_kernel
+from lib.kernels import set_occupancy
 from lib.sentences import against, best_of, in_groups, show
 
 IMAGES = [(600, 300, 50), (2400, 1200, 50)]
@@ -55,8 +55,7 @@ def finish(rows, _arguments):
         row["lanes"] = f"{threads / (-(-threads // WARP) * WARP):.4g}"
         if row["mode"] == "megakernel" and row["work"] == "pixel":
             row["idle"] = f"{idle_share(row):.4f}"
-        kernel = tracing_kernel(row)
-        row["occupancy"] = f"{kernel.occupancy:.4f}" if kernel else ""
+        set_occupancy(row)
 
 
 def conclude(rows, _arguments):

@@ -81,13 +81,10 @@ def conclude(rows):
 
 
 def run(experiment, arguments):
-    program = harness.find_program(arguments.ptexp)
-    device = harness.find_device(program, arguments.device)
+    program, device = harness.program_and_device(arguments)
     commands = processes(device, arguments)
     if arguments.list:
-        for command in commands.values():
-            print(shlex.join([str(program), *command]))
-        return 0
+        return harness.list_commands(program, commands.values())
     path, rows = measure_table(
         experiment, arguments, program, device, kind="items", parts=commands,
         groups=((name, partial(measure, program, name, command, arguments))

@@ -8,7 +8,6 @@ need (docs/experiments.md, "Hardware counters"). A configuration that cannot be 
 says why. Needs a GPU that may be profiled.
 """
 import json
-import shlex
 import sys
 import tempfile
 from functools import partial
@@ -117,13 +116,11 @@ def measure(program, device, configuration, arguments):
 
 
 def run(experiment, arguments):
-    program = harness.find_program(arguments.ptexp)
-    device = harness.find_device(program, arguments.device)
+    program, device = harness.program_and_device(arguments)
     chosen = configurations(arguments, device)
     commands = {c.name: command_of(program, device, c, arguments, ".")[1:] for c in chosen}
     if arguments.list:
-        print("\n".join(shlex.join([str(program), *command]) for command in commands.values()))
-        return 0
+        return harness.list_commands(program, commands.values())
     harness.check_gpu(experiment, device)
     path, rows = measure_table(
         experiment, arguments, program, device, kind="counted",

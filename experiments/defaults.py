@@ -13,7 +13,7 @@ from lib import harness
 from lib.description import HarnessError
 from lib.harness import Configuration, Experiment, Plot
 from lib.scene_files import add_scene_files, scene_files, short_name
-from lib.sentences import against, in_groups
+from lib.sentences import against_megakernel, in_groups
 
 MODES = ["megakernel", "wavefront"]
 # scene, width, height, samples, depth: the paper's images, then scenes of quads and triangles
@@ -74,10 +74,7 @@ def configurations(arguments, _device):
 def conclude(rows, _arguments):
     lines = []
     for scene, mine in in_groups(rows, "panel").items():
-        of_mode = {row["mode"]: row for row in mine}
-        if len(of_mode) == len(MODES):
-            lines.append(f"{scene}, wavefront: " + against(
-                of_mode["megakernel"], of_mode["wavefront"], "the megakernel"))
+        lines += against_megakernel(scene, {row["mode"]: row for row in mine})
     return lines
 
 

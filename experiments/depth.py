@@ -8,7 +8,7 @@ import sys
 
 from lib import harness
 from lib.harness import Configuration, Experiment, Plot
-from lib.sentences import against, in_groups, show, time_of
+from lib.sentences import against_megakernel, in_groups, show, time_of
 
 DEPTHS, QUICK_DEPTHS = [1, 2, 4, 8, 16, 50], [1, 4]
 MODES = ["megakernel", "wavefront"]
@@ -53,11 +53,8 @@ def conclude(rows, _arguments):
                 f"{show(time_of(row).middle / int(row['rays']) * 1e6)} ns a ray at depth "
                 f"{row['max_depth']}" for row in ordered))
         for depth, pair in in_groups(mine, "x").items():
-            by_mode = {row["series"]: row for row in pair}
-            if len(by_mode) == 2:
-                mega, wave = by_mode["megakernel"], by_mode["wavefront"]
-                lines.append(f"{scene}, depth {depth}, wavefront: "
-                             f"{against(mega, wave, 'the megakernel')}")
+            lines += against_megakernel(f"{scene}, depth {depth}",
+                                        {row["series"]: row for row in pair})
     return lines
 
 

@@ -109,14 +109,11 @@ def table_text(rows):
 
 
 def run(experiment, arguments):
-    program = harness.find_program(arguments.ptexp, counts_lanes=True)
-    device = harness.find_device(program, arguments.device)
+    program, device = harness.program_and_device(arguments, counts_lanes=True)
     chosen = configurations(arguments, device)
     commands = {c.name: command_of(c, device) for c in chosen}
     if arguments.list:
-        for command in commands.values():
-            print(shlex.join([str(program), *command]))
-        return 0
+        return harness.list_commands(program, commands.values())
     harness.check_gpu(experiment, device)
     print(f"{experiment.question}\non {device.choice}: {device.name} ({device.detail})", flush=True)
     path = harness.table_path(experiment, device, arguments)

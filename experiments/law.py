@@ -33,7 +33,7 @@ def add_arguments(parser):
 def folder_of(arguments):
     if arguments.tables:
         return arguments.tables
-    device = harness.find_device(harness.find_program(arguments.ptexp), arguments.device)
+    _program, device = harness.program_and_device(arguments)
     harness.check_gpu(EXPERIMENT, device)
     return arguments.output / device_folder(device)
 

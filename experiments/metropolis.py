@@ -139,8 +139,7 @@ class Renders:
 
     def __init__(self, arguments, folder):
         self.arguments, self.folder = arguments, Path(folder)
-        self.program = harness.find_program(arguments.ptexp)
-        self.device = harness.find_device(self.program, arguments.device)
+        self.program, self.device = harness.program_and_device(arguments)
         self.jobs, self.scenes = {}, scenes_of(arguments)
 
     def add(self, row, samples, seed, kind="exr", scale=1):

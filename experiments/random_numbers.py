@@ -62,11 +62,10 @@ def cost(row):
 
 
 def finish(rows, arguments):
-    program = harness.find_program(arguments.ptexp)
-    device = harness.find_device(program, arguments.device).choice
+    program, device = harness.program_and_device(arguments)
     for scene, image in scenes_of(arguments).items():
         arguments.images.put_errors(
-            [row for row in rows if row["panel"].startswith(f"{scene},")], program, device,
+            [row for row in rows if row["panel"].startswith(f"{scene},")], program, device.choice,
             f"--mode wavefront {image} --sampler sobol", arguments.reference_seconds)
     put_efficiency(rows)
     arguments.images.remove()

@@ -135,11 +135,10 @@ def configurations(arguments, _device):
 
 
 def finish(rows, arguments):
-    program = harness.find_program(arguments.ptexp)
-    device = harness.find_device(program, arguments.device).choice
+    program, device = harness.program_and_device(arguments)
     for name, scene in scenes_of(arguments).items():
         mine = [row for row in rows if row["panel"] == name]
-        arguments.images.put_errors(mine, program, device, f"{image_of(scene, arguments)} "
+        arguments.images.put_errors(mine, program, device.choice, f"{image_of(scene, arguments)} "
                                     f"{WAYS[BEST]}", arguments.reference_seconds)
         for row in mine:
             row["x"] = row["kernel_ms_median"]

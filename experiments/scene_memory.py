@@ -9,7 +9,7 @@ import sys
 
 from lib import harness
 from lib.harness import Configuration, Experiment, Plot
-from lib.kernels import tracing_kernel
+from lib.kernels import set_occupancy
 from lib.sentences import against, best_of, in_groups, listed
 
 MEMORIES = ["global", "constant", "shared"]
@@ -34,10 +34,8 @@ def configurations(arguments, _device):
 
 
 def finish(rows, _arguments):
-    """The occupancy of the kernel that finds hits."""
     for row in rows:
-        kernel = tracing_kernel(row)
-        row["occupancy"] = f"{kernel.occupancy:.4f}" if kernel else ""
+        set_occupancy(row)
 
 
 def conclude(rows, _arguments):

@@ -11,7 +11,7 @@ from lib import harness
 from lib.harness import Configuration, Experiment, Plot
 from lib.promises import judge_best
 from lib.scene_files import add_scene_files, scene_files, short_name
-from lib.sentences import against, fastest, in_groups
+from lib.sentences import against, against_megakernel, fastest, in_groups
 
 # scene, size, samples, and the promise in 10^6 samples/s that the better mode keeps
 BUILT_IN = [("cornell", 1024, 64, 1000), ("statue:1M", 1024, 32, 600), ("boxes", 1024, 32, None),
@@ -68,9 +68,7 @@ def conclude(rows, _arguments):
                 for mode, of_mode in in_groups(mine, "mode").items()
                 if any(row not in usual.values() for row in of_mode)}
         for how, pair in (("both at their best", best), ("both as usually written", usual)):
-            if len(pair) == len(USUAL):
-                lines.append(f"{scene}, {how}, wavefront: " + against(
-                    pair["megakernel"], pair["wavefront"], "the megakernel"))
+            lines += against_megakernel(f"{scene}, {how}", pair)
         lines += [f"{scene}, {mode} at its best: {against(usual[mode], row, 'what is usual')}"
                   for mode, row in best.items() if mode in usual]
     return lines

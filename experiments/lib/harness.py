@@ -33,11 +33,23 @@ def draw(path):
     return f"wrote {plot.draw(path)}"
 
 
+def program_and_device(arguments, counts_lanes=False):
+    """Those that --ptexp and --device name."""
+    program = find_program(arguments.ptexp, counts_lanes)
+    return program, find_device(program, arguments.device)
+
+
+def list_commands(program, commands):
+    """What --list prints, and its exit code."""
+    for command in commands:
+        print(shlex.join([str(program), *command]))
+    return 0
+
+
 def session_of(experiment, arguments):
     """Finds program and device, and asks the experiment for its configurations."""
     given = dict(vars(arguments))  # before configurations() adds anything
-    program = find_program(arguments.ptexp)
-    device = find_device(program, arguments.device)
+    program, device = program_and_device(arguments)
     device.calibration = arguments.calibration
     configurations = list(map(by_python, experiment.configurations(arguments, device)))
     names = [configuration.name for configuration in configurations]

@@ -29,7 +29,8 @@ def multiprocessors_of(detail):
     return int(found[1]) if found else 0
 
 
-def tracing_kernel(row):
-    """That which finds hits; None on the CPU."""
+def set_occupancy(row):
+    """The column `occupancy`: that of the kernel which finds hits; empty on the CPU."""
     kernels = kernels_of(row)
-    return kernels.get("megakernel") or kernels.get("intersect") or kernels.get("bounce")
+    kernel = kernels.get("megakernel") or kernels.get("intersect") or kernels.get("bounce")
+    row["occupancy"] = f"{kernel.occupancy:.4f}" if kernel else ""

@@ -25,6 +25,14 @@ def against(base, row, name, column="kernel_ms"):
     return f"{text} as {name}" + (", by times without a spread" if how == "unknown" else "")
 
 
+def against_megakernel(name, by_mode):
+    """['NAME, wavefront: 2.00 times as fast as the megakernel'], say; [] where a mode is missing."""
+    if not {"megakernel", "wavefront"} <= set(by_mode):
+        return []
+    return [f"{name}, wavefront: "
+            + against(by_mode["megakernel"], by_mode["wavefront"], "the megakernel")]
+
+
 def fastest(rows):
     """(the row of the shortest time, the others that do not differ significantly from it)"""
     best = min(rows, key=lambda row: time_of(row).middle)

@@ -1,5 +1,4 @@
 """Experiments on rays alone: sets of rays are made by `ptexp rays` and traced by `ptexp trace`."""
-import shlex
 import tempfile
 from dataclasses import asdict, dataclass, field
 from functools import partial
@@ -80,13 +79,11 @@ def table_text(rows):
 
 def run(experiment, arguments, sets_of):
     """harness.main's runner; `sets_of`: (device, arguments, folder) -> ray sets in that folder."""
-    program = harness.find_program(arguments.ptexp)
-    device = harness.find_device(program, arguments.device)
+    program, device = harness.program_and_device(arguments)
     sets = list(sets_of(device, arguments, "."))
     if arguments.list:
-        print("\n".join(shlex.join([str(program), *command])
-                        for rays in sets for command in [rays.make, *rays.traces]))
-        return 0
+        return harness.list_commands(program, [command for rays in sets
+                                               for command in [rays.make, *rays.traces]])
 
     def groups():
         with tempfile.TemporaryDirectory(prefix="ptexp-") as folder:
