@@ -65,14 +65,13 @@ class Lister {
 
   LightListData list() {
     list_area_lights();
-    const std::map<std::size_t, const Keys*> motions = list_motions();
+    const MotionTracks& tracks = scene_.motion.tracks();
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
       const Instance& instance = scene_.instances[i];
-      const auto motion = motions.find(i);
       add_group(instance.group, &instance.to_world,
-                motion == motions.end() ? nullptr : motion->second);
+                tracks.moves(i) ? tracks.instances[i] : MotionTrack());
     }
-    add_group(0, nullptr, nullptr);
+    add_group(0, nullptr, {});
     for (std::size_t i = 0; i < scene_.spheres.size(); ++i) add_sphere(i);
     for (const DeltaLight& light : scene_.delta_lights) {
       if (has_position(light.kind)) add_delta(light);
@@ -94,14 +93,6 @@ class Lister {
   }
 
  private:
-  using Keys = std::vector<TransformKey>;
-
-  std::map<std::size_t, const Keys*> list_motions() const {
-    std::map<std::size_t, const Keys*> motions;
-    for (const auto& moving : scene_.motion.instances) motions[moving.instance] = &moving.keys;
-    return motions;
-  }
-
   /// The table of the lights from `first` on.
   void make_table(std::size_t first) {
     std::vector<float> weights;
@@ -170,20 +161,21 @@ class Lister {
     }
   }
 
-  /// `keys`: of an instance that moves. Its lights are listed in its own space.
-  void add_group(std::uint32_t group, const Affine* to_world, const Keys* keys) {
+  /// The lights of an instance that moves are listed in its own space.
+  void add_group(std::uint32_t group, const Affine* to_world, const MotionTrack& track) {
     data_.first.push_back(static_cast<std::uint32_t>(data_.lights.size()));
     for (const EmissiveMesh& emissive : emissive_meshes_[group])
-      add_placed(*emissive.mesh, emissive.first_triangle, to_world, keys);
+      add_placed(*emissive.mesh, emissive.first_triangle, to_world, track);
   }
 
   /// The largest of all keys, twice: for the poses between them.
-  static LightError moving_error(const Keys& keys, const Vec3 v[3]) {
+  LightError moving_error(const MotionTrack& track, const Vec3 v[3]) const {
+    const MotionSegment* const segments = &scene_.motion.tracks().segments[track.first];
     LightError most{};
-    for (const TransformKey& key : keys) {
+    for (std::uint32_t key = 0; key <= track.count; ++key) {
+      const Affine pose = key == 0 ? pose_in(segments[0], 0.0f) : pose_in(segments[key - 1], 1.0f);
       const LightError error =
-          PlacementErrors(&key.to_world)
-              .of_triangle(v, key.to_world.vector(v[1] - v[0]), key.to_world.vector(v[2] - v[0]));
+          PlacementErrors(&pose).of_triangle(v, pose.vector(v[1] - v[0]), pose.vector(v[2] - v[0]));
       most.absolute = std::max(most.absolute, 2.0f * error.absolute);
       most.relative = std::max(most.relative, 2.0f * error.relative);
     }
@@ -191,7 +183,7 @@ class Lister {
   }
 
   void add_placed(const Mesh& mesh, std::uint32_t first_triangle, const Affine* to_world,
-                  const Keys* keys) {
+                  const MotionTrack& track) {
     const Emission& emission = scene_.materials[mesh.material].emission;
     const PlacementErrors errors(to_world);
     if (data_.lights.size() + mesh.triangles.size() > lights_max) {
@@ -212,11 +204,11 @@ class Lister {
       light.kind = turned ? LightKind::flipped_triangle : LightKind::triangle;
       light.edge1 = turned ? edge2 : edge1, light.edge2 = turned ? edge1 : edge2;
       const PackedLightError error = pack_light_error(
-          keys != nullptr ? moving_error(*keys, v) : errors.of_triangle(v, edge1, edge2));
+          track.moves() ? moving_error(track, v) : errors.of_triangle(v, edge1, edge2));
       light.relative_error = error.relative, light.absolute_error = error.absolute;
       light.weight = emitter_weight(emission.radiance, 0.5f * glm::length(glm::cross(edge1, edge2)),
                                     emission.texture_mean);
-      if (keys != nullptr) {
+      if (track.moves()) {
         light.vertex = v[0];
         light.edge1 = v[turned ? 2 : 1] - v[0], light.edge2 = v[turned ? 1 : 2] - v[0];
       }

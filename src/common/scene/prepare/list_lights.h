@@ -13,7 +13,7 @@ namespace pt {
 /// through the scene's bounding sphere; with `uniform` each emitter (a mesh, in one instance; a
 /// sphere; a delta light) weighs 1, which its triangles share by their power. Triangles are
 /// numbered through the meshes in their order. Throws Error for more than 2^24 of them.
-/// `selection`: not automatic.
+/// `selection`: not automatic. After prepare_motion().
 LightListData list_lights(const SceneData& scene, const Bounds& bounds, LightSelection selection);
 
 /// The emitters that list_lights will find to give light, counted before quads become triangles.
