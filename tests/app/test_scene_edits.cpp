@@ -9,6 +9,7 @@
 #include "common/accel/embree/embree_tree.h"
 #include "common/device/devices.h"
 #include "common/scene/edit/scene_parameters.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "load/mitsuba_scene.h"
 #include "render_words.h"
 #include "scene/moving_room.h"
@@ -275,12 +276,26 @@ TEST(SceneEdits, MotionThatCannotBeBlurredIsHeldStill) {
   std::vector<std::string> warnings;
   MeasureHooks hooks;
   hooks.stop = [] { return false; };
-  const Image held =
-      editor.session.render(mlt, hooks, [&](const std::string& s) { warnings.push_back(s); }).image;
-  EXPECT_EQ(differing_pixels(held, still), 0u);
+  const auto render = [&] {
+    warnings.clear();
+    const auto warn = [&](const std::string& text) { warnings.push_back(text); };
+    return editor.session.render(mlt, hooks, warn).image;
+  };
+  EXPECT_EQ(differing_pixels(render(), still), 0u);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find("--integrator mlt knows no motion blur"), std::string::npos);
   EXPECT_EQ(differing_pixels(render_now(editor.session, path).image, moving), 0u);
+  render();
+  for (const char* name : {"camera.fov", "materials.red.albedo"}) {
+    editor.change(editor[name]);
+    const Image edited = render();
+    EXPECT_TRUE(warnings.empty()) << name << ": " << warnings.front();  // was prepared anew
+    SceneData stands = editor.session.scene();
+    hold_still(stands);
+    RenderSession other(std::move(stands));
+    EXPECT_EQ(differing_pixels(edited, render_now(other, mlt).image), 0u) << name;
+    EXPECT_GT(differing_pixels(edited, still), 0u) << name;
+  }
   const RenderCommand strict = edit_command({{"integrator", "mlt"}, {"strict", "on"}});
   EXPECT_NE(error_of(editor.session, strict).find("knows no motion blur"), std::string::npos);
 }

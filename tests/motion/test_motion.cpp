@@ -399,7 +399,12 @@ AttributeEnd
     options.scene = path, options.device = {DeviceChoice::Kind::cpu, 0};
     if (set) set(options);
     warnings.clear();
-    return load_scene(options, device, [&](const std::string& text) { warnings.push_back(text); });
+    SceneData scene = load_scene(options, {});  // which may be before the device is known
+    resolve_scene_for(scene, options, device,
+                      [&](const std::string& text) { warnings.push_back(text); });
+    EXPECT_EQ(scene.properties.has_motion, scene.moves());
+    EXPECT_EQ(scene.motion.prepared != nullptr, scene.moves());
+    return scene;
   };
   EXPECT_TRUE(load().moves());
   EXPECT_TRUE(warnings.empty());

@@ -21,7 +21,8 @@ inline void prepare_scene_for(SceneData& scene, const Options& options, const De
 inline SceneData make_scene_for(const Options& options, const DeviceInfo& device,
                                 const Warn& warn = {}) {
   SceneData scene = load_scene(options, device, warn);
-  prepare_scene_for(scene, options, device);
+  resolve_scene_for(scene, options, device, warn);
+  prepare_scene(scene, plan_for(options, scene, device));
   return scene;
 }
 

@@ -110,7 +110,7 @@ int verify_command(const VerifyCommand& command) {
   }
   const DeviceInfo device = choose_devices(options.device, options.threads).front();
   SceneData scene = load_scene(options, device);
-  resolve_scene(scene, options);
+  resolve_scene_for(scene, options, device);
   const ExecutionPlan plan = plan_render(options, scene, {device}).front();
   prepare_scene(scene, plan);
   check_same_render(header, file,

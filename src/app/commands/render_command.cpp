@@ -208,7 +208,8 @@ int render(const RenderCommand& command, Ranks& ranks, const Resumption* resumpt
   clock.end(&ProcessTimes::scene);
   report.scene_ms = load_ms + timed_ms([&, &scene = scene] {
                       apply_defaults(scene.defaults, command.given, options);
-                      resolve_scene(scene, options);
+                      resolve_scene_for(scene, options, devices.front(),
+                                        options.quiet ? Warn() : Warn(print_warning));
                       plans = plan_render(options, scene, devices);
                       if (!options.explain) prepare_scene(scene, plans.front());
                     });

@@ -6,6 +6,7 @@
 #include "common/error/error.h"
 #include "common/options/option_names.h"
 #include "common/rays/ray_file.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {
@@ -49,6 +50,7 @@ SceneData load_traced_scene(const std::string& name) {
     Options options;
     options.scene = name;
     scene = load_scene(options, choose_device({DeviceChoice::Kind::cpu, 0}));
+    hold_still(scene);  // rays in a file have no time
     convert_quads(scene);
   }
   scene.name = name;

@@ -38,20 +38,6 @@ bool is_scene_file(const std::string& scene) {
 
 }  // namespace
 
-void hold_still_if_needed(SceneData& scene, const Options& options, const DeviceInfo& device,
-                          const Warn& warn) {
-  if (!scene.moves()) return;
-  SceneData resolved = scene;
-  resolve_scene(resolved, options);
-  const std::string why = motion_obstacle(options, resolved.properties, device.properties.is_cuda);
-  if (why.empty()) return;
-  const std::string what =
-      fmt::format("scene '{}' moves while the shutter is open: {}", scene.name, why);
-  if (options.strict) throw Error(what);
-  if (warn) warn(what + ". Rendered without motion, as where it begins");
-  hold_still(scene);
-}
-
 SceneData load_scene(const Options& options, const DeviceInfo& device, const Warn& warn) {
   if (is_scene_file(options.scene)) {
     const SceneFiles files;
@@ -66,7 +52,6 @@ SceneData load_scene(const Options& options, const DeviceInfo& device, const War
                                                       options.time,
                                                       options.shutter,
                                                       options.animation});
-    hold_still_if_needed(scene, options, device, limit.function());
     scene.source_hash = files.hash(std::filesystem::path(options.scene).parent_path());
     for (const auto& path : files.paths()) scene.source_files.push_back(path.string());
     return scene;
@@ -92,6 +77,18 @@ SceneData load_scene(const Options& options, const DeviceInfo& device, const War
   }
 #endif
   throw Error("--create-world device: expected a CUDA device, this is '" + device.name + "'");
+}
+
+void resolve_scene_for(SceneData& scene, const Options& options, const DeviceInfo& device,
+                       const Warn& warn) {
+  resolve_scene(scene, options);
+  const std::string why = motion_obstacle(options, scene.properties, device.properties.is_cuda);
+  if (why.empty()) return;
+  const std::string what =
+      fmt::format("scene '{}' moves while the shutter is open: {}", scene.name, why);
+  if (options.strict) throw Error(what);
+  if (warn) warn(what + ". Rendered without motion, as where it begins");
+  hold_still(scene, options);
 }
 
 std::vector<ExecutionPlan> plan_render(const Options& options, const SceneData& scene,

@@ -1,5 +1,5 @@
-// From options to a renderer: load_scene, resolve_scene (scene/prepare), plan_render,
-// prepare_scene, make_renderer. The only place that knows all modes and devices.
+// From options to a renderer: load_scene, resolve_scene_for, plan_render, prepare_scene
+// (scene/prepare), make_renderer. The only place that knows all modes and devices.
 #pragma once
 
 #include <functional>
@@ -21,10 +21,10 @@ using Warn = std::function<void(const std::string&)>;
 /// Error.
 SceneData load_scene(const Options& options, const DeviceInfo& device, const Warn& warn = {});
 
-/// A scene that moves and cannot be blurred by the options or on the device is held as where its
-/// motion begins, which `warn` is told; with --strict that is an Error. Before resolve_scene.
-void hold_still_if_needed(SceneData& scene, const Options& options, const DeviceInfo& device,
-                          const Warn& warn);
+/// resolve_scene(). A scene that moves and cannot be blurred by the options or on the device is
+/// then held as where its motion begins, which `warn` is told; with --strict that is an Error.
+void resolve_scene_for(SceneData& scene, const Options& options, const DeviceInfo& device,
+                       const Warn& warn = {});
 
 /// A plan for each device to render this resolved scene; all of them have the structure of the
 /// first. The options no longer leave anything to the scene's defaults (apply_defaults,

@@ -131,8 +131,7 @@ SceneData RenderSession::resolved_scene(const Options& options, const DeviceInfo
                                         const Warn& warn) const {
   SceneData scene = source_;
   if (instant_) hold_still_at(scene, *instant_);
-  hold_still_if_needed(scene, options, device, warn);
-  resolve_scene(scene, options);
+  resolve_scene_for(scene, options, device, warn);
   return scene;
 }
 
@@ -141,10 +140,15 @@ SceneData RenderSession::resolved_scene(const Options& options, const DeviceInfo
 bool RenderSession::update(Prepared& ready, const Options& options,
                            const std::vector<DeviceInfo>& devices, SceneChanges changes) const {
   SceneData& scene = ready.scene;
-  const bool on_cuda = devices.front().properties.is_cuda;
-  if (source_.moves() && !instant_ &&
-      (!scene.moves() || !motion_obstacle(options, scene.properties, on_cuda).empty()))
-    return false;  // whether it is blurred is to be decided again
+  if (source_.moves() && !instant_) {
+    SceneProperties moving = scene.properties;
+    moving.has_motion = true;
+    moving.has_moving_surfaces = source_.deforms() || !source_.motion.instances.empty();
+    // What no longer has masks may be blurred now.
+    if (changes.any_but_camera() || is_limited(source_.camera)) moving.has_masks = false;
+    const bool on_cuda = devices.front().properties.is_cuda;
+    if (motion_obstacle(options, moving, on_cuda).empty() != scene.moves()) return false;
+  }
   if (!resolve_changes(scene, source_, changes, options)) return false;
   if (ready.rendering && !changes.any_but_camera()) return true;
   std::vector<ExecutionPlan> plans = ready.plan_anew(options, devices);

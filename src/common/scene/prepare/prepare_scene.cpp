@@ -170,6 +170,14 @@ void resolve_scene(SceneData& scene, const Options& options) {
   scene.properties = properties_of(scene);
 }
 
+void hold_still(SceneData& scene, const Options& options) {
+  hold_still(scene);
+  set_camera(scene, scene.camera, options);
+  prepare_motion(scene);
+  prepare_materials(scene, options.multiple_scattering, options.integrator != IntegratorKind::mlt);
+  scene.properties = properties_of(scene);
+}
+
 void prepare_scene(SceneData& scene, const ExecutionPlan& plan) {
   if (plan.kernel_set == KernelSet::specialized) {
     prepare_primitives_only(scene, plan.accel);

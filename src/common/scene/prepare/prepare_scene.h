@@ -19,6 +19,9 @@ void hold_still_at(SceneData& scene, float time);
 /// empty scene and for a camera, a medium or a material that cannot be rendered.
 void resolve_scene(SceneData& scene, const Options& options);
 
+/// Leaves everything where its motion begins, in a resolved scene.
+void hold_still(SceneData& scene, const Options& options);
+
 /// Builds a resolved scene's acceleration structure (unless the plan's builder runs on the device)
 /// and lists its lights. Throws Error for what cannot be built.
 void prepare_scene(SceneData& scene, const ExecutionPlan& plan);
