@@ -300,6 +300,33 @@ TEST(SceneEdits, MotionThatCannotBeBlurredIsHeldStill) {
   EXPECT_NE(error_of(editor.session, strict).find("knows no motion blur"), std::string::npos);
 }
 
+TEST(SceneEdits, VerticesThatAreSetNoLongerDeform) {
+  SceneData room = moving_room();
+  Mesh& floor = room.meshes.front();
+  floor.normals.assign(floor.positions.size(), Vec3(0, 1, 0));
+  ASSERT_FALSE(room.meshes[3].end_normals.empty());
+  const RenderCommand command = edit_command({{"spp", "4"}});
+  Editor editor(room);
+  const Image before = render_now(editor.session, command).image;
+  editor.change(editor["meshes.mesh_0.normals"]);  // of what stands beside what deforms
+  EXPECT_GT(differing_pixels(expect_as_anew(editor.session, command).image, before), 0u);
+  editor.change(editor["meshes.mesh_3.normals"]);
+  room = editor.session.scene();
+  EXPECT_TRUE(room.deforms());
+  room.meshes[3].end_normals = room.meshes[3].normals;
+  RenderSession same(SceneData{room});
+  EXPECT_EQ(differing_pixels(expect_as_anew(editor.session, command).image,
+                             render_now(same, command).image),
+            0u);
+  editor.change(editor["meshes.mesh_3.vertices"]);
+  const SceneData& now = editor.session.scene();
+  room.meshes[3] = {now.meshes[3].positions, room.meshes[3].triangles, room.meshes[3].normals};
+  RenderSession stands(SceneData{room});
+  EXPECT_EQ(differing_pixels(expect_as_anew(editor.session, command).image,
+                             render_now(stands, command).image),
+            0u);
+}
+
 // Where other materials, spheres, media or lights make preparation another one.
 TEST(SceneEdits, EveryParameterOfOtherScenes) {
   const std::string sphere = R"(<shape type="sphere" id="ball"><bsdf type="dielectric"/>

@@ -272,11 +272,21 @@ class Lister {
       if (mesh.positions.empty()) continue;
       const auto name =
           name_of(scene_.names.meshes, i, or_material("mesh", i, mesh.material), taken);
+      // Set, they stay so while the shutter is open.
       add_rows(
-          "meshes." + name + ".vertices", [i](auto& s) -> auto& { return s.meshes[i].positions; });
-      if (!mesh.normals.empty())
-        add_rows(
-            "meshes." + name + ".normals", [i](auto& s) -> auto& { return s.meshes[i].normals; });
+          "meshes." + name + ".vertices", [i](auto& s) -> auto& {
+            auto& own = s.meshes[i];
+            if constexpr (requires { own.positions.clear(); })
+              own.end_positions.clear(), own.end_normals.clear();
+            return own.positions;
+          });
+      if (mesh.normals.empty()) continue;
+      add_rows(
+          "meshes." + name + ".normals", [i](auto& s) -> auto& {
+            auto& own = s.meshes[i];
+            if constexpr (requires { own.normals.clear(); }) own.end_normals.clear();
+            return own.normals;
+          });
     }
   }
 

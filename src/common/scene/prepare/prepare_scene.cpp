@@ -231,6 +231,7 @@ bool resolve_changes(SceneData& scene, const SceneData& source, const SceneChang
   const bool moves = scene.moves() || source.moves();
   if (changes.move_surfaces() && (scene.primitive_count() > 0 || !scene.media.empty() || moves))
     return false;
+  if (changes.normals && scene.deforms()) return false;
   if (changes.camera && moves &&
       (!source.motion.camera.empty() || scene.motion.shutter != source.motion.shutter))
     return false;
