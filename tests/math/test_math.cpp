@@ -1,6 +1,8 @@
 // The arithmetic below everything else, against double precision and integer division.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "common/math/functions.h"
 #include "common/math/transform.h"
 #include "common/sampling/mis.h"
@@ -167,6 +169,24 @@ TEST(Affine, DeterminantIsThatOfTheColumns) {
     EXPECT_NEAR(m.determinant(), glm::dot(glm::dvec3(x), glm::cross(glm::dvec3(y), glm::dvec3(z))),
                 1e-5);
   }
+}
+
+TEST(Affine, IsInvertibleWhereTheWayBackIsOneInSinglePrecision) {
+  TestRandom random(10);
+  const float huge = std::numeric_limits<float>::max(), none = std::nanf("");
+  const auto turned = [&] { return rotate({1, 2, 3}, 360 * random.unit()); };
+  for (int k = 0; k < 100; ++k) {
+    const float size = std::pow(10.0f, 24 * random.unit() - 12);
+    const Affine map = turned() * scale(Vec3(size, 2 * size, -size)) * turned();
+    ASSERT_TRUE(is_invertible(map)) << size;
+    const Vec3 p(random.unit(), random.unit(), random.unit());
+    EXPECT_LT(glm::length(inverse(map).point(map.point(p)) - p), 1e-5f);
+  }
+  for (const Affine& map :
+       {scale({1, 0, 1}), scale({1, none, 1}), scale({1, huge, 1}), scale({huge, 1, 1 / huge}),
+        scale(Vec3(1e15f)), translate({huge, 0, 0}), translate({0, none, 0}),
+        translate({1e10f, 0, 0}) * scale({1e-10f, 1, 1})})
+    EXPECT_FALSE(is_invertible(map)) << map.row[0].x;
 }
 
 }  // namespace

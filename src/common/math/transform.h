@@ -77,6 +77,19 @@ PT_HD Affine inverse(const Affine& a) {
   return result;
 }
 
+/// Whether inverse(a) takes everything back, and a unit vector has a length in single precision
+/// after either of them; whether `a` mirrors is the sign of its determinant, which must have one.
+inline bool is_invertible(const Affine& a) {
+  const auto is_small = [](const Affine& map) {
+    float sum = 0;
+    for (const Vec4& row : map.row)
+      for (int i = 0; i < 4; ++i) sum += std::fabs(row[i]);
+    return sum < 1e18f;  // has a square
+  };
+  const float determinant = a.determinant();
+  return std::isfinite(determinant) && determinant != 0.0f && is_small(a) && is_small(inverse(a));
+}
+
 inline Affine translate(const Vec3& by) {
   return {{{1, 0, 0, by.x}, {0, 1, 0, by.y}, {0, 0, 1, by.z}}};
 }

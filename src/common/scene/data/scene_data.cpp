@@ -41,21 +41,6 @@ std::uint64_t SceneData::triangle_count() const {
   return count;
 }
 
-namespace {
-
-bool is_invertible(const Affine& a) {
-  const auto is_finite = [](const Affine& map) {
-    double sum = 0;
-    for (const Vec4& row : map.row)
-      for (int i = 0; i < 4; ++i) sum += std::abs(double{row[i]});
-    return sum < 1e15;
-  };
-  const float determinant = a.determinant();
-  return is_finite(a) && std::isfinite(determinant) && determinant != 0.0f && is_finite(inverse(a));
-}
-
-}  // namespace
-
 void check_keys(const std::vector<TransformKey>& keys, const std::string& what) {
   const auto refuse = [&](const std::string& why) {
     throw Error(fmt::format("{}: {}", what, why));

@@ -38,8 +38,7 @@ void check(const SceneData& scene, const VolumeData& v) {
       fail(fmt::format("a value of {}; expected finite ones, at least 0", value));
     }
   }
-  const float determinant = v.to_world.determinant();
-  if (!std::isfinite(determinant) || determinant == 0) fail("expected a map that has an inverse");
+  if (!is_invertible(v.to_world)) fail("expected a map that has an inverse");
 }
 
 }  // namespace

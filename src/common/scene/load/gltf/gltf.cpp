@@ -70,10 +70,9 @@ Uses uses_of_meshes(File& file, const MovingNodes& moving) {
   return uses;
 }
 
-bool is_invertible(const PlacedNode& node) {
-  return node.to_world.determinant() != 0.0f &&
-         std::ranges::none_of(
-             node.keys, [](const TransformKey& key) { return key.to_world.determinant() == 0.0f; });
+bool has_inverses(const PlacedNode& node) {
+  return is_invertible(node.to_world) &&
+         std::ranges::all_of(node.keys, is_invertible, &TransformKey::to_world);
 }
 
 /// Adds the meshes of the file to the scene.
@@ -101,7 +100,7 @@ class MeshAdder {
     std::vector<const PlacedNode*> instances;
     for (const PlacedNode* user : users) {
       const bool repeats = users.size() > 1 || !user->keys.empty();
-      if (repeats && is_invertible(*user)) {
+      if (repeats && has_inverses(*user)) {
         instances.push_back(user);
         continue;
       }

@@ -110,8 +110,7 @@ Affine to_world_of(const nanovdb::Map& map, const IndexBox& box) {
     }
     result.row[i].w = static_cast<float>(moved);
   }
-  const float determinant = result.determinant();
-  if (!std::isfinite(determinant) || determinant == 0) {
+  if (!is_invertible(result)) {
     throw Error("a map to the world that has no inverse, expected one that has");
   }
   return result;

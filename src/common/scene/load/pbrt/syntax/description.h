@@ -1,7 +1,6 @@
 // What a pbrt file says, before it is made a scene: things may be named before they are defined.
 #pragma once
 
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -14,11 +13,6 @@
 #include "common/scene/load/pbrt/syntax/parameters.h"
 
 namespace pt::pbrt {
-
-inline bool is_invertible(const Affine& map) {
-  const float determinant = map.determinant();
-  return std::isfinite(determinant) && determinant != 0.0f;
-}
 
 /// A directive with a type and parameters: a material, a texture, a light, ...
 struct Entity {
