@@ -305,7 +305,7 @@ Affine affine_of(Values v, const std::string& what) {
     if (!std::isfinite(x)) throw Error(fmt::format("{}: {}: expected finite numbers", what, x));
   Affine map;
   std::memcpy(&map.row, v.data(), sizeof(Affine));
-  if (v[12] != 0 || v[13] != 0 || v[14] != 0 || v[15] != 1 || map.determinant() == 0.0f)
+  if (v[12] != 0 || v[13] != 0 || v[14] != 0 || v[15] != 1 || !is_invertible(map))
     throw Error(what +
                 ": expected an affine map that can be inverted, its last row 0 0 "
                 "0 1");
