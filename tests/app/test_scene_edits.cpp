@@ -320,7 +320,7 @@ TEST(SceneEdits, VerticesThatAreSetNoLongerDeform) {
             0u);
   editor.change(editor["meshes.mesh_3.vertices"]);
   const SceneData& now = editor.session.scene();
-  room.meshes[3] = {now.meshes[3].positions, room.meshes[3].triangles, room.meshes[3].normals};
+  room.meshes[3] = {now.meshes[3].positions, room.meshes[3].triangles, room.meshes[3].normals, {}};
   RenderSession stands(SceneData{room});
   EXPECT_EQ(differing_pixels(expect_as_anew(editor.session, command).image,
                              render_now(stands, command).image),

@@ -83,8 +83,11 @@ TEST(MovingMedia, DimWhatAMovingCameraSees) {
         EXPECT_NEAR(image.pixel(x, 0)[c], expected, 0.015) << x << ' ' << c;
         EXPECT_NEAR(passed[static_cast<std::size_t>(3 * x + c)], expected, 2e-3) << x << ' ' << c;
       }
-    for (const ImageLayer& layer : image.layers)
-      if (layer.name == "depth") EXPECT_NEAR(layer.values[3], 6, 1e-4);  // halfway
+    for (const ImageLayer& layer : image.layers) {
+      if (layer.name == "depth") {
+        EXPECT_NEAR(layer.values[3], 6, 1e-4);  // halfway
+      }
+    }
   }
 }
 

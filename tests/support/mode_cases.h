@@ -159,7 +159,7 @@ inline void expect_plausible(const Rendered& rendered, const Options& options) {
   EXPECT_EQ(counts.rays, rays);
   double sum = 0;
   for (const float value : rendered.image.rgb) sum += value;
-  EXPECT_GT(sum, 0.05 * static_cast<double>(rendered.image.rgb.size()));
+  EXPECT_GT(sum, 0.04 * static_cast<double>(rendered.image.rgb.size()));
 }
 
 /// An option that must not change the image, with values of all kinds; the first is usual.

@@ -21,8 +21,8 @@ class ProjectedRay {
     const Vec3 origin = ray.origin - scan_center;
     x_axis_ = frame.tangent;
     y_axis_ = frame.bitangent;
-    x_ = glm::dot(x_axis_, origin);
-    y_ = glm::dot(y_axis_, origin);
+    x_ = dot_from_x(x_axis_, origin);
+    y_ = dot_from_x(y_axis_, origin);
   }
 
   PT_HD const Vec3& x_axis() const { return x_axis_; }
@@ -33,9 +33,12 @@ class ProjectedRay {
   /// Negative when the line misses the sphere, one of Primitives::scan.
   PT_HD float nearness(const Sphere& sphere) const {
     const Vec3& c = sphere.center;
-    const float x = c.x * x_axis_.x + (c.y * x_axis_.y + (c.z * x_axis_.z - x_));
-    const float y = c.x * y_axis_.x + (c.y * y_axis_.y + (c.z * y_axis_.z - y_));
-    return sphere.radius_squared - x * x - y * y;
+    const auto along = [&c](const Vec3& axis, float of_ray) {
+      const float from_z = fused_multiply_add(c.z, axis.z, -of_ray);
+      return fused_multiply_add(c.x, axis.x, fused_multiply_add(c.y, axis.y, from_z));
+    };
+    const float x = along(x_axis_, x_), y = along(y_axis_, y_);
+    return fused_multiply_add(-y, y, fused_multiply_add(-x, x, sphere.radius_squared));
   }
 
  private:

@@ -34,12 +34,12 @@ struct SlabHit {
 
 PT_HD SlabHit intersect_slabs(const SlabRay& ray, const Vec4& xy, float min_z, float max_z,
                               float t_max) {
-  const float x0 = xy.x * ray.inverse.x + ray.offset.x;
-  const float x1 = xy.y * ray.inverse.x + ray.offset.x;
-  const float y0 = xy.z * ray.inverse.y + ray.offset.y;
-  const float y1 = xy.w * ray.inverse.y + ray.offset.y;
-  const float z0 = min_z * ray.inverse.z + ray.offset.z;
-  const float z1 = max_z * ray.inverse.z + ray.offset.z;
+  const float x0 = fused_multiply_add(xy.x, ray.inverse.x, ray.offset.x);
+  const float x1 = fused_multiply_add(xy.y, ray.inverse.x, ray.offset.x);
+  const float y0 = fused_multiply_add(xy.z, ray.inverse.y, ray.offset.y);
+  const float y1 = fused_multiply_add(xy.w, ray.inverse.y, ray.offset.y);
+  const float z0 = fused_multiply_add(min_z, ray.inverse.z, ray.offset.z);
+  const float z1 = fused_multiply_add(max_z, ray.inverse.z, ray.offset.z);
   return {fmaxf(fmaxf(fminf(x0, x1), fminf(y0, y1)), fmaxf(fminf(z0, z1), 0.0f)),
           fminf(fminf(fmaxf(x0, x1), fmaxf(y0, y1)), fminf(fmaxf(z0, z1), t_max))};
 }

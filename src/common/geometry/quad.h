@@ -29,21 +29,21 @@ inline constexpr float quad_margin = 16.0f * half_ulp;
 
 /// Distance along the ray, or a value <= 0 when it misses.
 PT_HD float quad_distance(const Quad& quad, const Ray& ray) {
-  const float cosine = glm::dot(quad.normal, ray.direction);
+  const float cosine = dot_from_x(quad.normal, ray.direction);
   const Vec3 oc = quad.corner - ray.origin;
-  const float t = glm::dot(quad.normal, oc) / cosine;
-  const Vec3 p = t * ray.direction - oc;
-  const float a = glm::dot(quad.dual_a, p);
-  const float b = glm::dot(quad.dual_b, p);
+  const float t = dot_from_x(quad.normal, oc) / cosine;
+  const Vec3 p = add_scaled(-oc, t, ray.direction);
+  const float a = dot_from_x(quad.dual_a, p);
+  const float b = dot_from_x(quad.dual_b, p);
   constexpr float margin = quad_margin;
   const bool inside = a >= -margin && a <= 1.0f + margin && b >= -margin && b <= 1.0f + margin;
   return inside && t < infinite_distance ? t : -1.0f;
 }
 
 PT_HD SurfacePoint quad_surface(const Quad& quad, const Ray& ray, float t) {
-  const Vec3 p = ray.origin + t * ray.direction;
-  const float distance = glm::dot(quad.normal, p - quad.corner);
-  const Vec3 position = p - distance * quad.normal;
+  const Vec3 p = add_scaled(ray.origin, t, ray.direction);
+  const float distance = dot_from_x(quad.normal, p - quad.corner);
+  const Vec3 position = add_scaled(p, -distance, quad.normal);
   const float scale =
       max_abs(position) + max_abs(quad.corner) + max_abs(quad.edge_a) + max_abs(quad.edge_b);
   return {position, quad.normal, 8.0f * half_ulp * scale};

@@ -22,7 +22,7 @@ struct alignas(16) Sphere {
 /// chapter 7).
 PT_HD float sphere_distance(const Sphere& sphere, const Ray& ray) {
   const Vec3 oc = sphere.center - ray.origin, d = ray.direction;
-  const float b = fused_multiply_add(oc.z, d.z, fused_multiply_add(oc.x, d.x, oc.y * d.y));
+  const float b = dot_from_x(oc, d);
   const Vec3 off = add_scaled(oc, -b, d);
   float discriminant = sphere.radius_squared;
   PT_UNROLL(3)
@@ -35,9 +35,9 @@ PT_HD float sphere_distance(const Sphere& sphere, const Ray& ray) {
 
 /// The point of the surface nearest to the ray's point at `t`.
 PT_HD SurfacePoint sphere_surface(const Sphere& sphere, const Ray& ray, float t) {
-  const Vec3 normal = normalize(ray.origin + t * ray.direction - sphere.center);
+  const Vec3 normal = normalize(add_scaled(ray.origin, t, ray.direction) - sphere.center);
   const float radius = sphere.radius();
-  return {sphere.center + radius * normal, normal,
+  return {add_scaled(sphere.center, radius, normal), normal,
           8.0f * half_ulp * 2.0f * (max_abs(sphere.center) + radius)};
 }
 

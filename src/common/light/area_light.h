@@ -20,7 +20,8 @@ PT_HD float quad_solid_angle_pdf(const Quad& quad, const Vec3& wi, float distanc
 /// Uniform over the area, on the side to which the normal points.
 PT_HD LightSample sample_quad(const Quad& quad, const Vec3& from, float u0, float u1) {
   // Relative to `from` before the sum: the nearer the light, the smaller the rounding error.
-  const Vec3 to_light = (quad.corner - from) + u0 * quad.edge_a + u1 * quad.edge_b;
+  const Vec3 to_light =
+      add_scaled(add_scaled(quad.corner - from, u0, quad.edge_a), u1, quad.edge_b);
   const float distance2 = dot(to_light, to_light);
   if (distance2 == 0.0f) return {};
   const float inverse_distance = inverse_sqrt(distance2), distance = distance2 * inverse_distance;

@@ -26,6 +26,11 @@ PT_HD float dot(const Vec3& a, const Vec3& b) {
   return fused_multiply_add(a.x, b.x, fused_multiply_add(a.y, b.y, a.z * b.z));
 }
 
+/// In the order of glm::dot, in which the CPU's lanes test spheres and quads.
+PT_HD float dot_from_x(const Vec3& a, const Vec3& b) {
+  return fused_multiply_add(a.z, b.z, fused_multiply_add(a.y, b.y, a.x * b.x));
+}
+
 /// a + t b.
 PT_HD Vec3 add_scaled(const Vec3& a, float t, const Vec3& b) {
   return {fused_multiply_add(t, b.x, a.x), fused_multiply_add(t, b.y, a.y),

@@ -13,8 +13,8 @@ PT_HD float to_unit_float(std::uint32_t bits) {
 
 /// Uniform on the unit sphere; density 1 / (4 pi).
 PT_HD Vec3 sample_unit_sphere(float u0, float u1) {
-  const float z = 1.0f - 2.0f * u0;
-  const float r = fast_sqrt(1.0f - z * z);
+  const float z = fused_multiply_add(-2.0f, u0, 1.0f);
+  const float r = fast_sqrt(fused_multiply_add(-z, z, 1.0f));
   const SinCos phi = sincos_2pi(u1);
   return {r * phi.cos, r * phi.sin, z};
 }

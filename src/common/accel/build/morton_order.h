@@ -79,9 +79,8 @@ PT_HD int lowest_bit(int x) { return 31 - count_leading_zeros(static_cast<std::u
 PT_HD std::uint32_t pair_rank(const Bounds& a, const Bounds& b, int lower, int distance) {
   Bounds both = a;
   both.grow(b);
-  const Vec3 size = both.max - both.min;
-  const float area = size.x * size.y + size.y * size.z + size.z * size.x;
-  const std::uint32_t bits = float_to_bits(area);  // of NaN, too: large, but never `no_pair`
+  const std::uint32_t bits =
+      float_to_bits(half_area_of(both.max - both.min));  // of NaN, too: large, but never `no_pair`
   const int side = lower >> lowest_bit(distance) & 1;
   return (bits & ~15u) | static_cast<std::uint32_t>((distance - 1) << 1 | side);
 }

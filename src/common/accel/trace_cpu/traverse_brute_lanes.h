@@ -27,7 +27,7 @@ PT_LANES inline LaneVec<L> from_lanes(const Vec3& v, const LaneVec<L>& p) {
   return {L::all(v.x) - p.x, L::all(v.y) - p.y, L::all(v.z) - p.z};
 }
 
-/// As glm::dot.
+/// As dot_from_x.
 template <class L>
 PT_LANES inline typename L::Float dot_lanes(const LaneVec<L>& a, const LaneVec<L>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;

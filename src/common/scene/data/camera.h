@@ -161,8 +161,8 @@ PT_HD bool film_position(const Camera& camera, const Vec3& point, Vec2& position
 template <bool specialized = false>
 PT_HD Ray camera_ray(const Camera& camera, float x, float y, float u0, float u1) {
   const Disk lens = sample_unit_disk(u0, u1);
-  const Vec3 offset = lens.x * camera.lens_x + lens.y * camera.lens_y;
-  const Vec3 to_focus = camera.corner + x * camera.step_x + y * camera.step_y;
+  const Vec3 offset = add_scaled(lens.x * camera.lens_x, lens.y, camera.lens_y);
+  const Vec3 to_focus = add_scaled(add_scaled(camera.corner, x, camera.step_x), y, camera.step_y);
   if (!specialized && camera.is_orthographic) return {camera.origin + to_focus, camera.forward};
   const Vec3 way = to_focus - offset;
   return {add_scaled(camera.origin + offset, camera.near_part, way), normalize(way)};
