@@ -63,14 +63,14 @@ def configurations(arguments, _device):
         f"{name}: {variant}",
         f"--scene {scene} --width {size} --height {size} --spp {spp} "
         f"--max-depth 8 --builder hploc {options}",
-        {"panel": "", "series": variant, "x": name, "variant": variant,
+        {"panel": name, "series": variant, "x": variant, "variant": variant,
          **{f"mrays_{part}": "" for part in PARTS}, **ratio_labels(), "registers": ""},
         same_image="" if has_other_hits(variant) else name)
         for name, scene in scenes_of(arguments).items() for variant, options in VARIANTS.items()]
 
 
 def scene_of(row):
-    return row["x"]
+    return row["panel"]
 
 
 def traced_ms(row, part):
@@ -102,7 +102,7 @@ def conclude(rows, _arguments):
 EXPERIMENT = Experiment(
     "hardware", __doc__.splitlines()[0], configurations,
     Plot("bars", "Renders with OptiX and without (an H100 or H200 has no RT cores)",
-         "scene", "times as fast as our wavefront", y="ratio", log_y=False),
+         "", "times as fast as our wavefront", y="ratio", log_y=False),
     add_arguments=add_arguments, finish=finish, conclude=conclude, needs_gpu=True,
     table=("mrays_median", "ratio_median", "registers"))
 

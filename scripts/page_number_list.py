@@ -11,7 +11,7 @@ import re
 import subprocess
 import sys
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -40,7 +40,8 @@ class Claim:
 
 @lru_cache(maxsize=None)
 def rows_of(table):
-    path = RESULTS / (f"{table}.csv" if "mitsuba" in table else f"{DEVICE}/{table}.csv")
+    is_beside = "mitsuba" in table or "/" in table
+    path = RESULTS / (f"{table}.csv" if is_beside else f"{DEVICE}/{table}.csv")
     if not path.is_file():
         raise NumberError(f"{path} is missing")
     with open(path, newline="", encoding="utf-8") as file:
@@ -204,6 +205,19 @@ def loops():
             and row["status"] == "measured"]
 
 
+def times_by_optix(hits):
+    """Times of a wavefront that traces by OptiX over ours, of each scene."""
+    return [1 / float(row["ratio_median"]) for row in rows_of("log/2026-11-optix-times") if row["variant"] == hits]
+
+
+def least_by_optix(hits):
+    return min(times_by_optix(hits))
+
+
+def most_by_optix(hits):
+    return max(times_by_optix(hits))
+
+
 def unseen():
     """(works that the law predicts within 10 %, all) of families that it has not seen, in its range."""
     errors = [abs(float(row["error"])) for row in rows_of("law")
@@ -318,6 +332,14 @@ PLACES = [
           [lambda: min(loops()), lambda: max(loops())]),
     Place(TABLES, "ptexp takes {:.1f}, {:.1f} and {:.1f} times as many samples per second",
           [against_mitsuba(depth) for depth in ("1.0", "10.0", "50.0")]),
+    Place(TABLES, "a ray takes {:.2f} times as long as where all stand still by the megakernel and {:.2f} times by the "
+          "wavefront; where all sway {:.2f} and {:.2f} times",
+          [by("log/2026-11-motion", "motion_cost", name=f"10K trees, {percent} %: {mode}")
+           for percent in (1, 100) for mode in ("megakernel", "wavefront")]),
+    Place(TABLES, "by OptiX takes {:.1f} to {:.1f} times as long as ours with `--optix-hits custom`, which gives equal "
+          "images, and {:.1f} to {:.1f} times with `built-in`",
+          [partial(end, "custom") for end in (least_by_optix, most_by_optix)]
+          + [partial(end, "built-in") for end in (least_by_optix, most_by_optix)]),
     Place(TABLES, "medians of {} seeds", [metropolis("ajar", "mlt", 0, "seeds")]),
     Place(TABLES, "scene | {} s | {} s | RMSE; FLIP, {} s\n",
           [metropolis("ajar", "mlt", place, "seconds") for place in (0, -1, -1)]),
