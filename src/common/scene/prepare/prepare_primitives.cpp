@@ -47,9 +47,10 @@ void build_structure(SceneData& scene, const Bounds& others) {
   if (!scene.sphere_frames.empty()) {
     scene.sphere_frames = permuted(scene.sphere_frames, sphere_order, 0);
   }
+  std::vector<std::uint32_t> places(sphere_order.size());
+  for (std::uint32_t i = 0; i < places.size(); ++i) places[sphere_order[i]] = i;
   for (MotionData::MovingSphere& moving : scene.motion.spheres)
-    moving.sphere = static_cast<std::uint32_t>(std::ranges::find(sphere_order, moving.sphere) -
-                                               sphere_order.begin());
+    moving.sphere = places[moving.sphere];
   scene.quads = permuted(scene.quads, quad_order, sphere_count);
   scene.quad_material = permuted(scene.quad_material, quad_order, sphere_count);
   scene.primitive_numbers = permuted(scene.primitive_numbers, order, 0);
