@@ -177,8 +177,11 @@ Cells cells_of(const KernelRow& row) {
 }  // namespace
 
 NearestKernel nearest_kernel(const KernelNeed& need, EnumSet<KernelChoice> asked) {
+  constexpr EnumSet<KernelBody> of_optix{KernelBody::optix, KernelBody::queues};
   std::vector<Change> changes;
   for (const KernelRow& row : kernel_table) {
+    // Not every driver has OptiX.
+    if (row.bodies.intersects(of_optix) && !need.bodies.intersects(of_optix)) continue;
     const Change change(need, asked, row);
     if (change.is_possible()) changes.push_back(change);
   }
