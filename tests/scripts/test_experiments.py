@@ -492,7 +492,7 @@ class Hardware(unittest.TestCase):
         self.hardware = importlib.import_module("hardware")
 
     def rows(self, variant, **changes):
-        counts = {"paths": "90", "rays": "900", "shadow_rays": "100", "kernels": "", "x": "statue",
+        counts = {"paths": "90", "rays": "900", "shadow_rays": "100", "kernels": "", "panel": "statue",
                   **{f"kernel_ms_{part}": "10" for part in ("min", "median", "max", "low", "high")}}
         slower = {f"kernel_ms_{part}": "20" for part in ("min", "median", "max", "low", "high")}
         return [{**counts, "name": "a", "variant": self.hardware.BASE},
