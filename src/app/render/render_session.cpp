@@ -144,8 +144,6 @@ bool RenderSession::update(Prepared& ready, const Options& options,
     SceneProperties moving = scene.properties;
     moving.has_motion = true;
     moving.has_moving_surfaces = source_.deforms() || !source_.motion.instances.empty();
-    // What no longer has masks may be blurred now.
-    if (changes.any_but_camera() || is_limited(source_.camera)) moving.has_masks = false;
     const bool on_cuda = devices.front().properties.is_cuda;
     if (motion_obstacle(options, moving, on_cuda).empty() != scene.moves()) return false;
   }
