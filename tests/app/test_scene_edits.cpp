@@ -301,27 +301,28 @@ TEST(SceneEdits, MotionThatCannotBeBlurredIsHeldStill) {
 }
 
 TEST(SceneEdits, VerticesThatAreSetNoLongerDeform) {
-  SceneData room = moving_room();
-  Mesh& floor = room.meshes.front();
+  SceneData deforming = moving_room();
+  Mesh& floor = deforming.meshes.front();
   floor.normals.assign(floor.positions.size(), Vec3(0, 1, 0));
-  ASSERT_FALSE(room.meshes[3].end_normals.empty());
+  ASSERT_FALSE(deforming.meshes[3].end_normals.empty());
   const RenderCommand command = edit_command({{"spp", "4"}});
-  Editor editor(room);
+  Editor editor(deforming);
   const Image before = render_now(editor.session, command).image;
   editor.change(editor["meshes.mesh_0.normals"]);  // of what stands beside what deforms
   EXPECT_GT(differing_pixels(expect_as_anew(editor.session, command).image, before), 0u);
   editor.change(editor["meshes.mesh_3.normals"]);
-  room = editor.session.scene();
-  EXPECT_TRUE(room.deforms());
-  room.meshes[3].end_normals = room.meshes[3].normals;
-  RenderSession same(SceneData{room});
+  deforming = editor.session.scene();
+  EXPECT_TRUE(deforming.deforms());
+  deforming.meshes[3].end_normals = deforming.meshes[3].normals;
+  RenderSession same(SceneData{deforming});
   EXPECT_EQ(differing_pixels(expect_as_anew(editor.session, command).image,
                              render_now(same, command).image),
             0u);
   editor.change(editor["meshes.mesh_3.vertices"]);
   const SceneData& now = editor.session.scene();
-  room.meshes[3] = {now.meshes[3].positions, room.meshes[3].triangles, room.meshes[3].normals, {}};
-  RenderSession stands(SceneData{room});
+  deforming.meshes[3] = {
+      now.meshes[3].positions, deforming.meshes[3].triangles, deforming.meshes[3].normals, {}};
+  RenderSession stands(SceneData{deforming});
   EXPECT_EQ(differing_pixels(expect_as_anew(editor.session, command).image,
                              render_now(stands, command).image),
             0u);
