@@ -146,7 +146,8 @@ TEST_F(CudaOptix, GivesTheRoomsOfOurMegakernel) {
         Rendered found = render_room(scene, settings, "megakernel");
         // Among the materials OptiX's program sends one shadow ray less, which no pixel shows.
         std::uint64_t& shadow_rays = found.counts.shadow_rays;
-        if (shadow_rays + 1 == expected.counts.shadow_rays) ++shadow_rays;
+        if (std::string(name) == "materials" && shadow_rays + 1 == expected.counts.shadow_rays)
+          ++shadow_rays;
         expect_images(name, hits, found, expected);
       }
     }

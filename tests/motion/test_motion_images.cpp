@@ -268,32 +268,14 @@ TEST(MotionImages, AtAnInstantAreThoseOfTheRoomThen) {
 
 TEST(MotionImages, AreTheMeanOfScenesThatStandStill) {
   Options options = motion_options(32, 24, 32, 3);
-  const auto render_moving = [&](std::uint64_t seed) {
-    Options own = options;
-    own.seed = seed;
-    return image_of_motion(moving_room(), own);
-  };
-  const auto render_still = [&](std::uint64_t seed) {
-    TestRandom random(seed);
-    Image sum;
-    for (int i = 0; i < 32; ++i) {
-      Options own = options;
-      own.seed = 1000 * seed + static_cast<std::uint64_t>(i), own.spp = 1;
-      const Image one =
-          image_of_motion(room_at((static_cast<float>(i) + random.unit()) / 32.0f), own);
-      if (sum.rgb.empty()) sum = {one.width, one.height, std::vector<float>(one.rgb.size())};
-      for (std::size_t k = 0; k < one.rgb.size(); ++k) sum.rgb[k] += one.rgb[k] / 32.0f;
-    }
-    return sum;
-  };
-  const auto moving = region_means(render_moving, 20);
-  expect_same_means(moving, region_means(render_still, 20), "static renders");
+  const SceneData room = moving_room();
+  const auto moving = expect_mean_of_still(room, options, room_at);
   // Lights that move are found by sampling them and by hitting them: both alone are right.
   options.nee = false, options.spp = 256;
-  expect_same_means(moving, region_means(render_moving, 20), "without light sampling");
+  expect_same_means(moving, means_of(room, options), "without light sampling");
   options.nee = true, options.spp = 64, options.mis = MisHeuristic::balance;
   options.light_selection = LightSelection::uniform;
-  expect_same_means(moving, region_means(render_moving, 20), "balance heuristic");
+  expect_same_means(moving, means_of(room, options), "balance heuristic");
 }
 
 TEST(MotionImages, OfWhiteThingsInAWhiteSkyAreWhite) {

@@ -164,28 +164,8 @@ TEST(MovingSpheres, AreTheSameInAllModesAndStructures) {
 }
 
 TEST(MovingSpheres, AreTheMeanOfScenesThatStandStill) {
-  Options options = motion_options(32, 24, 32, 3);
-  const auto render_moving = [&](std::uint64_t seed) {
-    Options own = options;
-    own.seed = seed;
-    return image_of_motion(moving_spheres(), own);
-  };
-  const auto render_still = [&](std::uint64_t seed) {
-    TestRandom random(seed);
-    Image sum;
-    for (int i = 0; i < 32; ++i) {
-      Options own = options;
-      own.seed = 1000 * seed + static_cast<std::uint64_t>(i), own.spp = 1;
-      SceneData scene = moving_spheres();
-      hold_still_at(scene, (static_cast<float>(i) + random.unit()) / 32.0f);
-      const Image one = image_of_motion(scene, own);
-      if (sum.rgb.empty()) sum = {one.width, one.height, std::vector<float>(one.rgb.size())};
-      for (std::size_t k = 0; k < one.rgb.size(); ++k) sum.rgb[k] += one.rgb[k] / 32.0f;
-    }
-    return sum;
-  };
-  expect_same_means(region_means(render_moving, 20), region_means(render_still, 20),
-                    "static renders");
+  const SceneData scene = moving_spheres();
+  expect_mean_of_still(scene, motion_options(32, 24, 32, 3), held(scene));
 }
 
 TEST(MovingSpheres, KeepTheirRadius) {

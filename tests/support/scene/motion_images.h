@@ -71,4 +71,46 @@ inline void expect_same_means(const std::vector<MeanEstimate>& a,
   }
 }
 
+inline std::vector<MeanEstimate> means_of(const SceneData& scene, const Options& options) {
+  const auto render = [&](std::uint64_t seed) {
+    Options own = options;
+    own.seed = seed;
+    return image_of_motion(scene, own);
+  };
+  return region_means(render, 20);
+}
+
+/// That a moving scene's image is the mean of images of what `at` gives for times in [0, 1), at
+/// rest: as many, at stratified times, as the moving one has samples. Returns the moving one's
+/// means.
+inline std::vector<MeanEstimate> expect_mean_of_still(const SceneData& moving,
+                                                      const Options& options,
+                                                      const std::function<SceneData(float)>& at) {
+  const auto render_still = [&](std::uint64_t seed) {
+    const auto count = static_cast<float>(options.spp);
+    TestRandom random(seed);
+    Image sum;
+    for (int i = 0; i < options.spp; ++i) {
+      Options own = options;
+      own.seed = 1000 * seed + static_cast<std::uint64_t>(i), own.spp = 1;
+      const Image one = image_of_motion(at((static_cast<float>(i) + random.unit()) / count), own);
+      if (sum.rgb.empty()) sum = {one.width, one.height, std::vector<float>(one.rgb.size())};
+      for (std::size_t k = 0; k < one.rgb.size(); ++k) sum.rgb[k] += one.rgb[k] / count;
+    }
+    return sum;
+  };
+  std::vector<MeanEstimate> means = means_of(moving, options);
+  expect_same_means(means, region_means(render_still, 20), "static renders");
+  return means;
+}
+
+/// What moves, held at a time.
+inline std::function<SceneData(float)> held(const SceneData& moving) {
+  return [moving](float time) {
+    SceneData scene = moving;
+    hold_still_at(scene, time);
+    return scene;
+  };
+}
+
 }  // namespace pt
