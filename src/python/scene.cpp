@@ -30,10 +30,12 @@ std::vector<std::string> Warnings::take() {
 void Warnings::give() {
   const std::vector<std::string> messages = take();
   if (messages.empty()) return;
-  run_python([&] {
-    const nb::object warn = nb::module_::import_("ptexp._errors").attr("warn");
-    for (const std::string& message : messages) warn(message);
-  });
+  nb::object warn;
+  run_python([&] { warn = nb::module_::import_("ptexp._errors").attr("warn"); });
+  for (const std::string& message : messages) {
+    const nb::str text(message.c_str(), message.size());
+    run_python([&] { warn(text); });
+  }
 }
 
 namespace {

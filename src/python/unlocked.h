@@ -43,7 +43,8 @@ class Unlocked {
 /// Runs `call`, which runs Python code. Before 3.14 Python ends a daemon thread in the midst of
 /// such code, when the interpreter ends, by unwinding the stack: std::terminate() at the first
 /// function that is noexcept. Such a thread waits here for the process to end instead, as
-/// since 3.14.
+/// since 3.14. It no longer has the interpreter's lock: objects of Python must not belong to `call`
+/// itself, whose destructors have run by then.
 template <class Call>
 auto run_python(const Call& call) {
   try {

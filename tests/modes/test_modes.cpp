@@ -80,7 +80,7 @@ PixelSum plain_pixel(const SceneData& scene, const Options& options, std::uint32
       }
       return u;
     };
-    dispatch_traits(CpuSceneKinds{}, scene.traits, [&](auto traits) {
+    dispatch_traits(CpuKindsWith<PhiloxSource>{}, scene.traits, [&](auto traits) {
       sum.radiance += glm::dvec3(
           follow_path<decltype(traits)>(view, pixel, path_settings_of(options), draw, sum));
     });
