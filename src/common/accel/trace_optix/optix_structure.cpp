@@ -105,8 +105,8 @@ void OptixStructure::build_scene(const TriangleTree& tree, OptixHits hits,
   for (const InstanceRecord& record : records)
     groups.push_back({record.first_slot, record.slot_count, 0});
   std::ranges::sort(groups, {}, &Group::first_slot);
-  const auto same = std::ranges::unique(groups, {}, &Group::first_slot);
-  groups.erase(same.begin(), same.end());
+  const auto is_same = [](const Group& a, const Group& b) { return a.first_slot == b.first_slot; };
+  groups.erase(std::unique(groups.begin(), groups.end(), is_same), groups.end());
   std::vector<float> margins(groups.size());
   for (const InstanceRecord& record : records) {
     const auto g = static_cast<std::size_t>(

@@ -82,8 +82,7 @@ struct NodeLevel {
       : log2_side(log2_entries), entry_side(side_of_entry) {
     for (const Int3& place : places) origins.push_back(origin(place));
     std::ranges::sort(origins, {}, key);
-    const auto same = std::ranges::unique(origins);
-    origins.erase(same.begin(), same.end());
+    origins.erase(std::unique(origins.begin(), origins.end()), origins.end());
   }
 
   static std::tuple<int, int, int> key(const Int3& p) { return {p.x, p.y, p.z}; }
