@@ -78,7 +78,9 @@ TEST(Verify, RendersItsShareOfThePixels) {
                                                    {1e-3, ": 256 pixels (8.33 %)"},
                                                    {0.25, ": 768 pixels (25 %)"}};
   for (const auto& [share, text] : shares) {
-    const std::string said = printed([&] { EXPECT_EQ(verify_command({path, share, {}}), 0); });
+    const std::string said = printed([&, share = share] {
+      EXPECT_EQ(verify_command({path, share, {}}), 0);
+    });
     EXPECT_TRUE(said.starts_with(path + text)) << said;
   }
 }

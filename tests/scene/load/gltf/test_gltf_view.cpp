@@ -87,7 +87,7 @@ TEST(GltfLights, ABadValueLosesItselfOrTheLamp) {
     const Loaded loaded(with_light(light));
     EXPECT_EQ(loaded.count(message), 1u) << light << testing::PrintToString(loaded.messages);
     EXPECT_EQ(loaded.scene.delta_lights.size(), is_lost ? 0u : 1u) << light;
-    expect_error([&] { Loaded strict(with_light(light), true); }, "--strict");
+    expect_error([&light = light] { Loaded strict(with_light(light), true); }, "--strict");
   }
   GltfMaker missing = with_light({{"type", "point"}});
   missing.root["nodes"][1]["extensions"]["KHR_lights_punctual"]["light"] = 3;

@@ -57,7 +57,9 @@ void expect_defaults(const std::vector<Directive>& directives) {
     };
     const std::string without = print("");
     for (const auto& [name, usual, other] : d.parameters) {
-      const auto given = [&](const char* value) { return fmt::format("\"{}\" {}", name, value); };
+      const auto given = [name = name](const char* value) {
+        return fmt::format("\"{}\" {}", name, value);
+      };
       EXPECT_EQ(print(given(usual)), without) << d.before << " " << given(usual);
       EXPECT_NE(print(given(other)), without) << d.before << " " << given(other);
     }
