@@ -2,11 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pt {
 namespace {
 
 double luminance_of(const double* c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
+
+/// The number that a plane has, or 0 where a damaged file left something else there.
+template <class Integer>
+Integer integer_of(double value) {
+  const double end = std::ldexp(1.0, std::numeric_limits<Integer>::digits);
+  return value >= 0 && value < end ? static_cast<Integer>(value) : 0;
+}
 
 }  // namespace
 
@@ -68,12 +76,12 @@ double PixelReader::feature(std::uint64_t pixel, std::uint32_t plane) const {
     mean[s] = n[s] > 0 ? plane_value(pixel, s, plane) / n[s] : 0.0;
   }
   const auto weights =
-      sign_weights(filter_, static_cast<std::uint64_t>(n[0]), static_cast<std::uint64_t>(n[1]));
+      sign_weights(filter_, integer_of<std::uint64_t>(n[0]), integer_of<std::uint64_t>(n[1]));
   return weights[0] * mean[0] + weights[1] * mean[1];
 }
 
 std::uint32_t PixelReader::number(std::uint64_t pixel, std::uint32_t plane) const {
-  return static_cast<std::uint32_t>(plane_value(pixel, 0, plane));
+  return integer_of<std::uint32_t>(plane_value(pixel, 0, plane));
 }
 
 double relative_error(const PixelReader& reader, std::uint64_t pixel_count, std::uint64_t samples) {

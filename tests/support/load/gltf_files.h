@@ -121,7 +121,7 @@ inline GltfMaker triangle_file() {
 /// The triangle with a material.
 inline GltfMaker with_material(const Json& material) {
   GltfMaker maker = triangle_file();
-  maker.root["materials"] = {material};
+  maker.root["materials"] = Json::array({material});
   maker.root["meshes"][0]["primitives"][0]["material"] = 0;
   return maker;
 }

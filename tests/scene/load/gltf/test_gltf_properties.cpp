@@ -215,7 +215,7 @@ TEST(GltfProperties, SamplersAndTransforms) {
     maker.root["images"] = {{{"uri", "data:image/bmp;base64," + base64(bmp)}}};
     maker.root["textures"] = {{{"source", 0}}};
     if (!sampler.is_null()) {
-      maker.root["samplers"] = {sampler};
+      maker.root["samplers"] = Json::array({sampler});
       maker.root["textures"][0]["sampler"] = 0;
     }
     const Loaded loaded(maker);
@@ -302,7 +302,7 @@ TEST(GltfProperties, EverySlotLivesWithoutItsPicture) {
       json.replace(json.find("VALUE"), 5, R"({"index":0})");
       GltfMaker maker = with_material(Json::parse(json));
       maker.root["textures"] = {{{"source", 0}}};
-      maker.root["images"] = {image};
+      maker.root["images"] = Json::array({image});
       const Loaded loaded(maker);
       EXPECT_NEAR(slot.read(loaded.scene), slot.expected, 1e-5) << json << image;
       EXPECT_GE(loaded.count("images[0]"), 1u) << json << image;

@@ -31,7 +31,7 @@ GltfMaker with_texture(const Json& use = Json::object(), const Json& sampler = J
   maker.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"].update(use);
   maker.root["textures"] = {{{"source", 0}}};
   if (!sampler.is_null()) {
-    maker.root["samplers"] = {sampler};
+    maker.root["samplers"] = Json::array({sampler});
     maker.root["textures"][0]["sampler"] = 0;
   }
   maker.root["images"] = {{{"uri", "data:image/bmp;base64," + base64(four_texels())}}};

@@ -18,7 +18,7 @@ GltfMaker with_sets(const Json& material, std::initializer_list<float> uv0,
   if (uv0.size()) attributes["TEXCOORD_0"] = maker.floats(uv0, "VEC2");
   if (uv1.size()) attributes["TEXCOORD_1"] = maker.floats(uv1, "VEC2");
   maker.mesh({{"attributes", attributes}, {"indices", indices}, {"material", 0}});
-  maker.root["materials"] = {material};
+  maker.root["materials"] = Json::array({material});
   std::string bmp("BM\x3a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\1\0\0\0\1\0\0\0\1\0\x18\0", 30);
   bmp.resize(54);
   bmp += std::string("\xff\x80\x80\0", 4);

@@ -135,7 +135,7 @@ GltfMaker with_camera(const Json& camera) {
       {{"camera", 0}, {"translation", {10, 0, 0}}, {"rotation", {0, h, 0, h}}});
   maker.root["nodes"].push_back({{"camera", 0}});
   maker.root["scenes"][0]["nodes"] = {0, 1, 2};
-  maker.root["cameras"] = {camera};
+  maker.root["cameras"] = Json::array({camera});
   return maker;
 }
 

@@ -76,7 +76,7 @@ Loaded pane(const Json& material) {
                                      "VEC3");
   const int indices = maker.indices<std::uint16_t>({0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7});
   maker.mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}, {"material", 0}});
-  maker.root["materials"] = {material};
+  maker.root["materials"] = Json::array({material});
   maker.root["cameras"] = {
       {{"type", "perspective"}, {"perspective", {{"yfov", 0.002}, {"znear", 0.1}}}}};
   maker.root["nodes"].push_back({{"camera", 0}, {"translation", {0, 0, 5}}});
