@@ -36,7 +36,8 @@ FeatureKernel feature_kernel(const SceneTraits& traits) {
                Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true, true>,
                Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true, true>,
                Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true, true, true>,
-               Traits<Accel::bvh2, Geometry::mixed, Lighting::full, false, false, false, true>>;
+               Traits<Accel::bvh2, Geometry::mixed, Lighting::full, false, false, false, true>,
+               Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true, true, false, true>>;
   FeatureKernel kernel = nullptr;
   dispatch_traits(Kinds{}, needed, [&](auto kind) { kernel = find_features<decltype(kind)>; });
   return kernel;
