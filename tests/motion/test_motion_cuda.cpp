@@ -46,6 +46,7 @@ std::vector<SceneData> moving_rooms() {
   masked.name = "masks without media";
   masked.materials[masked.meshes[1].material].opacity = constant_opacity(0.6f);
   rooms.push_back(moving_spheres());
+  rooms.push_back(glowing_room());
   return rooms;
 }
 

@@ -29,6 +29,11 @@ struct Mesh {
   /// Of a mesh that deforms: where the vertices are when the shutter closes, and their normals;
   /// between, all are linear in time. Empty: they stay.
   std::vector<Vec3> end_positions = {}, end_normals = {};
+
+  std::size_t vertex_sets() const { return end_positions.empty() ? 1 : 2; }
+  const std::vector<Vec3>& positions_of(std::size_t set) const {
+    return set == 0 ? positions : end_positions;
+  }
 };
 
 /// The attributes of a triangle's corners, side by side: four 16-byte loads from two sectors of

@@ -79,6 +79,15 @@ struct alignas(16) SphereTrack {
   MotionTrack track;
 };
 
+/// What moves a light that is a triangle or a sphere.
+struct MovingLight {
+  static constexpr std::uint32_t none = 0xffffffffu;
+
+  std::uint32_t primitive =
+      none;                       ///< a slot of the tree of triangles, or a sphere; none: it stands
+  std::uint32_t instance = none;  ///< of the triangle; none: it lies in the world
+};
+
 struct Bvh2Node;
 struct Triangle;
 struct CornerAttributes;
@@ -88,10 +97,8 @@ struct Motion {
   const MotionSegment* segments = nullptr;
   const MotionTrack* instances = nullptr;  ///< [InstanceRecord::index]
   const SphereTrack* spheres = nullptr;    ///< [sphere]; null: none moves
-  /// [light]: the instance that moves it, then it is a triangle in the instance's space; or a
-  /// sphere, by its number and `of_sphere`. Else `none`.
-  const std::uint32_t* light_instances = nullptr;
-  std::uint32_t light_count = 0;  ///< those after them are not moved
+  const MovingLight* lights = nullptr;     ///< [light]
+  std::uint32_t light_count = 0;           ///< those after them are not moved
   // Of meshes that deform: what is when the shutter closes. Null: none does.
   const Triangle* end_triangles = nullptr;        ///< [slot], of which the vertices count
   const CornerAttributes* end_corners = nullptr;  ///< [triangle id], of which the normals count
@@ -100,10 +107,8 @@ struct Motion {
   MotionTrack camera;
   Affine to_camera;  ///< from the world, at the pose that the scene's camera describes
 
-  static constexpr std::uint32_t none = 0xffffffffu, of_sphere = 0x80000000u;
-
-  PT_HD std::uint32_t instance_of(std::uint32_t light) const {
-    return light < light_count ? light_instances[light] : none;
+  PT_HD MovingLight light(std::uint32_t index) const {
+    return index < light_count ? lights[index] : MovingLight();
   }
   PT_HD Affine to_world(std::uint32_t instance, float time) const {
     return pose_at(segments, instances[instance], time);

@@ -43,6 +43,9 @@ struct LightError {
   PT_HD float bound(float distance) const {
     return fused_multiply_add(relative, distance, absolute);
   }
+  void grow(const LightError& other) {
+    absolute = fmaxf(absolute, other.absolute), relative = fmaxf(relative, other.relative);
+  }
 };
 
 /// Everything is computed relative to the ray's origin: a vector to the light (3 roundings), its

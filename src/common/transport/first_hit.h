@@ -146,7 +146,7 @@ PT_HD Vec2 motion_of(const Scene& scene, const Ray& ray, const Hit& hit, const V
     const auto place_at = [&](float then) {
       const Triangle triangle = triangle_of<Traits>(scene, slot, then);
       const Vec3 p = weighted_sum(b, triangle.v0, triangle.v1, triangle.v2);
-      return placed ? to_world_at<Traits>(scene, instance.index, then).point(p) : p;
+      return placed ? to_world_at<true>(scene, instance.index, then).point(p) : p;
     };
     begin = place_at(0.0f), end = place_at(1.0f);
   } else if (const Motion& motion = *scene.motion; moves(motion, hit.primitive)) {

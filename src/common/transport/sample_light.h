@@ -54,26 +54,31 @@ PT_HD IncidentLight sample_listed_light(const Scene& scene, const Light& light, 
   return incident;
 }
 
-/// A light of the list; where it moves, a triangle or a sphere, as it lies at `time`.
+/// A light of the list; of what moves or deforms, as it lies at `time`.
 template <bool has_motion>
 PT_HD Light light_at(const Scene& scene, std::uint32_t index, float time) {
   const Light light = load_wide(&scene.light_selector.lights[index]);
   if constexpr (has_motion) {
-    const std::uint32_t instance = scene.motion->instance_of(index);
-    if (instance != Motion::none) {
-      if (instance >= Motion::of_sphere) {
-        auto sphere = light.as<SphereLight>();
-        const std::uint32_t i = instance & ~Motion::of_sphere;
-        sphere.center = sphere_at(scene.primitives, i, *scene.motion, time).center;
-        return Light::of(sphere);
-      }
-      auto triangle = light.as<TriangleLight>();
-      const Affine to_world = scene.motion->to_world(instance, time);
+    const MovingLight moving = scene.motion->light(index);
+    if (moving.primitive == MovingLight::none) return light;
+    if (!is_triangle(light.kind)) {
+      auto sphere = light.as<SphereLight>();
+      sphere.center = sphere_at(scene.primitives, moving.primitive, *scene.motion, time).center;
+      return Light::of(sphere);
+    }
+    const Triangle own = triangle_at(scene.triangles, moving.primitive, *scene.motion, time);
+    const bool is_flipped = light.kind != LightKind::triangle;
+    auto triangle = light.as<TriangleLight>();
+    triangle.vertex = own.v0;
+    triangle.edge1 = (is_flipped ? own.v2 : own.v1) - own.v0;
+    triangle.edge2 = (is_flipped ? own.v1 : own.v2) - own.v0;
+    if (moving.instance != MovingLight::none) {
+      const Affine to_world = to_world_at<true>(scene, moving.instance, time);
       triangle.vertex = to_world.point(triangle.vertex);
       triangle.edge1 = to_world.vector(triangle.edge1);
       triangle.edge2 = to_world.vector(triangle.edge2);
-      return Light::of(triangle);
     }
+    return Light::of(triangle);
   }
   return light;
 }

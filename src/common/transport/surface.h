@@ -130,9 +130,9 @@ PT_HD CornerAttributes corners_of(const Scene& scene, std::uint32_t triangle_id,
   }
   return corners;
 }
-template <class Traits>
+template <bool has_motion>
 PT_HD Affine to_world_at(const Scene& scene, std::uint32_t index, float time) {
-  if constexpr (Traits::has_motion) {
+  if constexpr (has_motion) {
     if (scene.motion->instances[index].moves()) return scene.motion->to_world(index, time);
   }
   return load_wide(&scene.to_world[index]);
@@ -181,7 +181,7 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
   Vec3 normal = glm::cross(triangle.v1 - triangle.v0, triangle.v2 - triangle.v0);
   Vec3 shading_normal = has_normals ? corners.normal_at(b) : normal;
   if (placed) {
-    const Affine to_world = to_world_at<Traits>(scene, instance.index, time);
+    const Affine to_world = to_world_at<Traits::has_motion>(scene, instance.index, time);
     position = to_world.point(position);
     extent = to_world.absolute(extent);
     size = to_world.absolute(size);
@@ -201,8 +201,7 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
   if constexpr (Traits::lighting == Lighting::full) {
     if (surface.material.is(Material::tangents) && has_uvs) {
       if constexpr (Traits::has_motion) {
-        const Affine to_world =
-            placed ? to_world_at<Traits>(scene, instance.index, time) : Affine();
+        const Affine to_world = placed ? to_world_at<true>(scene, instance.index, time) : Affine();
         set_derivatives(triangle, corners, &to_world, surface);
       } else {
         set_derivatives(triangle, corners, placed ? &scene.to_world[instance.index] : nullptr,

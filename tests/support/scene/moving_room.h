@@ -54,6 +54,21 @@ inline SceneData moving_room() {
   return scene;
 }
 
+/// The room with lamps that deform: in an instance that moves, in one that stands and mirrors, and
+/// in the world.
+inline SceneData glowing_room() {
+  SceneData scene = moving_room();
+  scene.name = "lamps that deform";
+  Mesh& lamp = scene.meshes[2];
+  lamp.end_positions = {{-0.8f, -0.3f, 0.1f}, {0.4f, -0.6f, 0}, {0.2f, 0.3f, -0.2f}, {-0.4f, 0, 0}};
+  lamp.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  scene.meshes[3].material = lamp.material;
+  scene.materials[lamp.material].emission.texture =
+      add_picture(scene, 2, 1, {Color(1.0f), Color(0.25f)});
+  scene.instances[2].to_world = scene.instances[2].to_world * scale({-1, 1, 1});
+  return scene;
+}
+
 /// The room with balls instead: one that turns about a point beside it, with a picture, a lamp that
 /// goes, and one that stands.
 inline SceneData moving_spheres() {

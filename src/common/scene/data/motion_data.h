@@ -33,8 +33,8 @@ struct Shutter {
 /// What the host's kernels read; `view` points to the rest, so it is never copied.
 struct PreparedMotion {
   MotionTracks tracks;
-  std::vector<SphereTrack> spheres;            ///< see Motion
-  std::vector<std::uint32_t> light_instances;  ///< see Motion
+  std::vector<SphereTrack> spheres;  ///< see Motion
+  std::vector<MovingLight> lights;   ///< see Motion
   std::vector<Triangle> end_triangles;
   std::vector<CornerAttributes> end_corners;
   std::vector<Bvh2Node> end_nodes;
@@ -50,7 +50,7 @@ struct PreparedMotion {
     function(motion.segments, tracks.segments);
     function(motion.instances, tracks.instances);
     function(motion.spheres, spheres);
-    function(motion.light_instances, light_instances);
+    function(motion.lights, lights);
     function(motion.end_triangles, end_triangles);
     function(motion.end_corners, end_corners);
     function(motion.end_nodes, end_nodes);
@@ -60,7 +60,7 @@ struct PreparedMotion {
     for_each_array(view, [](auto*& pointer, const auto& values) {
       pointer = values.empty() ? nullptr : values.data();
     });
-    view.light_count = static_cast<std::uint32_t>(light_instances.size());
+    view.light_count = static_cast<std::uint32_t>(lights.size());
     view.end_node_count = static_cast<std::uint32_t>(end_nodes.size());
   }
 };

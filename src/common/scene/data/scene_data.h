@@ -77,6 +77,7 @@ struct LightListData {
   std::uint32_t sun = 0;                            ///< its index
   std::uint32_t table_first = 0;                    ///< see LightSelector
   std::vector<std::uint32_t> first, rank, spheres;  ///< see LightMap
+  std::vector<MovingLight> moving;  ///< see Motion, but spheres, and triangles by their ids
   float total_weight = 0.0f;
   float environment_probability = 0.0f, table_probability = 1.0f;
 };

@@ -33,14 +33,15 @@ PlacementErrors::PlacementErrors(const Affine* to_world) : placed_(to_world != n
   condition_ = max_abs(linear_.absolute(without_translation(to_object_).absolute(Vec3(1.0f))));
 }
 
-LightError PlacementErrors::of_triangle(const Vec3 vertices[3], const Vec3& edge1,
-                                        const Vec3& edge2) const {
+LightError PlacementErrors::of_triangle(const Vec3 vertices[3]) const {
+  const Vec3 edge1 = edge(vertices, 1), edge2 = edge(vertices, 2);
   const Vec3 normal = glm::cross(edge1, edge2);
   const float area = glm::length(normal);  // twice
-  const float edge = std::max({glm::length(edge1), glm::length(edge2), glm::length(edge2 - edge1)});
+  const float longest =
+      std::max({glm::length(edge1), glm::length(edge2), glm::length(edge2 - edge1)});
   if (!(area > 0.0f)) return {};
-  const float aspect = std::clamp(edge * edge / area, 1.0f, aspect_max);
-  LightError error{light_rounding * edge * aspect, light_rounding * condition_};
+  const float aspect = std::clamp(longest * longest / area, 1.0f, aspect_max);
+  LightError error{light_rounding * longest * aspect, light_rounding * condition_};
   if (placed_) {
     // A map of a point rounds up to 4 times, its own numbers have been rounded once, and the
     // shadow ray is another one: half an ulp each of the terms' sizes.
@@ -65,13 +66,9 @@ class Lister {
 
   LightListData list() {
     list_area_lights();
-    const MotionTracks& tracks = scene_.motion.tracks();
-    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
-      const Instance& instance = scene_.instances[i];
-      add_group(instance.group, &instance.to_world,
-                tracks.moves(i) ? tracks.instances[i] : MotionTrack());
-    }
-    add_group(0, nullptr, {});
+    for (std::uint32_t i = 0; i < scene_.instances.size(); ++i)
+      add_group(scene_.instances[i].group, i, &scene_.instances[i].to_world);
+    add_group(0, MovingLight::none, nullptr);
     for (std::size_t i = 0; i < scene_.spheres.size(); ++i) add_sphere(i);
     for (const DeltaLight& light : scene_.delta_lights) {
       if (has_position(light.kind)) add_delta(light);
@@ -161,64 +158,64 @@ class Lister {
     }
   }
 
-  /// The lights of an instance that moves are listed in its own space.
-  void add_group(std::uint32_t group, const Affine* to_world, const MotionTrack& track) {
+  /// `instance`: its number, or MovingLight::none for what lies in the world.
+  void add_group(std::uint32_t group, std::uint32_t instance, const Affine* to_world) {
     data_.first.push_back(static_cast<std::uint32_t>(data_.lights.size()));
-    for (const EmissiveMesh& emissive : emissive_meshes_[group])
-      add_placed(*emissive.mesh, emissive.first_triangle, to_world, track);
-  }
-
-  /// The largest of all keys, twice: for the poses between them.
-  LightError moving_error(const MotionTrack& track, const Vec3 v[3]) const {
-    const MotionSegment* const segments = &scene_.motion.tracks().segments[track.first];
-    LightError most{};
-    for (std::uint32_t key = 0; key <= track.count; ++key) {
-      const Affine pose = key == 0 ? pose_in(segments[0], 0.0f) : pose_in(segments[key - 1], 1.0f);
-      const LightError error =
-          PlacementErrors(&pose).of_triangle(v, pose.vector(v[1] - v[0]), pose.vector(v[2] - v[0]));
-      most.absolute = std::max(most.absolute, 2.0f * error.absolute);
-      most.relative = std::max(most.relative, 2.0f * error.relative);
+    std::vector<PlacementErrors> poses;  // at all keys, the first one first
+    if (const MotionTracks& tracks = scene_.motion.tracks(); tracks.moves(instance)) {
+      const MotionTrack& track = tracks.instances[instance];
+      for (std::uint32_t i = track.first; i < track.first + track.count; ++i) {
+        for (const float end : {0.0f, 1.0f}) {
+          const Affine pose = pose_in(tracks.segments[i], end);
+          poses.emplace_back(&pose);
+        }
+      }
+    } else {
+      poses.emplace_back(to_world);
     }
-    return most;
+    for (const EmissiveMesh& emissive : emissive_meshes_[group])
+      add_placed(*emissive.mesh, emissive.first_triangle, instance, to_world, poses);
   }
 
-  void add_placed(const Mesh& mesh, std::uint32_t first_triangle, const Affine* to_world,
-                  const MotionTrack& track) {
+  void add_placed(const Mesh& mesh, std::uint32_t first_triangle, std::uint32_t instance,
+                  const Affine* to_world, const std::vector<PlacementErrors>& poses) {
     const Emission& emission = scene_.materials[mesh.material].emission;
-    const PlacementErrors errors(to_world);
+    const bool moves = poses.size() > 1 || !mesh.end_positions.empty();
     if (data_.lights.size() + mesh.triangles.size() > lights_max) {
       throw Error(fmt::format("scene '{}' has more than {} triangles that emit light", scene_.name,
                               lights_max));
     }
+    const PlacementErrors first(to_world);
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+      const std::uint32_t id = first_triangle + static_cast<std::uint32_t>(i);
       Vec3 v[3];
-      for (int k = 0; k < 3; ++k) v[k] = mesh.positions[mesh.triangles[i].v[k]];
-      Vec3 edge1 = v[1] - v[0], edge2 = v[2] - v[0];
-      TriangleLight light;
-      light.vertex = v[0];
-      if (to_world != nullptr) {
-        light.vertex = to_world->point(v[0]);
-        edge1 = to_world->vector(edge1), edge2 = to_world->vector(edge2);
+      LightError error;
+      float area = 0.0f;  // of all sets of vertices, of which the first comes last
+      for (std::size_t set = mesh.vertex_sets(); set-- > 0;) {
+        for (int k = 0; k < 3; ++k) v[k] = mesh.positions_of(set)[mesh.triangles[i].v[k]];
+        area += 0.5f * glm::length(glm::cross(first.edge(v, 1), first.edge(v, 2)));
+        for (const PlacementErrors& pose : poses) error.grow(pose.of_triangle(v));
       }
+      TriangleLight light;
+      light.vertex = to_world != nullptr ? to_world->point(v[0]) : v[0];
       const bool turned = to_world != nullptr && to_world->determinant() < 0.0f;
       light.kind = turned ? LightKind::flipped_triangle : LightKind::triangle;
-      light.edge1 = turned ? edge2 : edge1, light.edge2 = turned ? edge1 : edge2;
-      const PackedLightError error = pack_light_error(
-          track.moves() ? moving_error(track, v) : errors.of_triangle(v, edge1, edge2));
-      light.relative_error = error.relative, light.absolute_error = error.absolute;
-      light.weight = emitter_weight(emission.radiance, 0.5f * glm::length(glm::cross(edge1, edge2)),
-                                    emission.texture_mean);
-      if (track.moves()) {
-        light.vertex = v[0];
-        light.edge1 = v[turned ? 2 : 1] - v[0], light.edge2 = v[turned ? 1 : 2] - v[0];
-      }
+      light.edge1 = first.edge(v, turned ? 2 : 1), light.edge2 = first.edge(v, turned ? 1 : 2);
+      const float more = moves ? 2.0f : 1.0f;  // for what lies between keys and sets
+      const PackedLightError packed =
+          pack_light_error({more * error.absolute, more * error.relative});
+      light.relative_error = packed.relative, light.absolute_error = packed.absolute;
+      light.weight = emitter_weight(
+          emission.radiance, area / static_cast<float>(mesh.vertex_sets()), emission.texture_mean);
       // Emission is scaled by opacity: such emitters are hit by BSDF sampling alone.
       if (!scene_.materials[mesh.material].opacity.is_opaque()) light.weight = 0.0f;
-      light.triangle =
-          mesh.uvs.empty() ? no_texture : first_triangle + static_cast<std::uint32_t>(i);
+      light.triangle = mesh.uvs.empty() ? no_texture : id;
       light.radiance = emission.radiance;
       light.emission_texture = emission.texture;
       data_.lights.push_back(Light::of(light));
+      if (!moves) continue;
+      data_.moving.resize(data_.lights.size());
+      data_.moving.back() = {id, instance};
     }
     finish_emitter(data_.lights.size() - mesh.triangles.size());
   }
@@ -278,11 +275,16 @@ std::size_t emitter_count(const SceneData& scene) {
   std::map<std::uint32_t, std::size_t> meshes;  // that emit, by group
   for (const Mesh& mesh : scene.meshes) {
     if (!emits(mesh.material, 1)) continue;
-    meshes[mesh.group] += std::ranges::any_of(mesh.triangles, [&](const TriangleIndices& t) {
-      const Vec3& a = mesh.positions[t.v[0]];
-      const Vec3 normal = glm::cross(mesh.positions[t.v[1]] - a, mesh.positions[t.v[2]] - a);
-      return emits(mesh.material, 0.5f * glm::length(normal));
-    });
+    const auto emits_in = [&](std::size_t set) {
+      const std::vector<Vec3>& p = mesh.positions_of(set);
+      return std::ranges::any_of(mesh.triangles, [&](const TriangleIndices& t) {
+        const Vec3 normal = glm::cross(p[t.v[1]] - p[t.v[0]], p[t.v[2]] - p[t.v[0]]);
+        return emits(mesh.material, 0.5f * glm::length(normal));
+      });
+    };
+    bool has_any = false;
+    for (std::size_t set = 0; set < mesh.vertex_sets(); ++set) has_any = has_any || emits_in(set);
+    meshes[mesh.group] += has_any;
   }
   std::size_t count = meshes[0];
   for (const Instance& instance : scene.instances) count += meshes[instance.group];

@@ -27,8 +27,14 @@ class PlacementErrors {
   /// `to_world`: null where the triangles lie in the world. Must not be singular.
   explicit PlacementErrors(const Affine* to_world);
 
-  /// The triangle's vertices in its own space, and its edges from the first one in the world.
-  LightError of_triangle(const Vec3 vertices[3], const Vec3& edge1, const Vec3& edge2) const;
+  /// The triangle's vertices in its own space.
+  LightError of_triangle(const Vec3 vertices[3]) const;
+
+  /// From the first vertex to another one, in the world.
+  Vec3 edge(const Vec3 vertices[3], int to) const {
+    const Vec3 own = vertices[to] - vertices[0];
+    return placed_ ? to_world_.vector(own) : own;
+  }
 
  private:
   bool placed_ = false;

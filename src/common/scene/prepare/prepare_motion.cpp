@@ -102,12 +102,28 @@ MotionTrack add_track(const std::vector<TransformKey>& keys, const Shutter& shut
   return track;
 }
 
+void check_vertex_sets(const SceneData& scene) {
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    const Mesh& mesh = scene.meshes[i];
+    const auto check = [&](const char* what, std::size_t end, std::size_t begin) {
+      if (end != 0 && end != begin)
+        throw Error(
+            fmt::format("scene '{}': mesh {} has {} {} when the shutter closes; expected "
+                        "{}, as when it opens",
+                        scene.name, i, end, what, begin));
+    };
+    check("positions", mesh.end_positions.size(), mesh.positions.size());
+    check("normals", mesh.end_normals.size(), mesh.normals.size());
+  }
+}
+
 }  // namespace
 
 void prepare_motion(SceneData& scene) {
   MotionData& motion = scene.motion;
   motion.prepared.reset();
   if (!scene.moves()) return;
+  check_vertex_sets(scene);
   const Shutter& shutter = motion.shutter;
   if (!(shutter.close > shutter.open) || !std::isfinite(shutter.close - shutter.open))
     throw Error(
@@ -192,22 +208,19 @@ void hold_still_at(SceneData& scene, float time) {
 void prepare_moving_lights(SceneData& scene) {
   if (!scene.motion.prepared) return;
   PreparedMotion& motion = *scene.motion.prepared;
-  const std::vector<std::uint32_t>& first = scene.light_list.first;
-  motion.light_instances.clear();
-  for (const MotionData::MovingInstance& moving : scene.motion.instances) {
-    const std::uint32_t end = first[moving.instance + 1];
-    if (motion.light_instances.size() < end) motion.light_instances.resize(end, Motion::none);
-    for (std::uint32_t light = first[moving.instance]; light < end; ++light)
-      motion.light_instances[light] = moving.instance;
-  }
+  motion.lights = scene.light_list.moving;
+  std::vector<std::uint32_t> slots(motion.lights.empty() ? 0 : scene.triangle_count());  // by id
+  for (std::size_t i = 0; !slots.empty() && i < scene.tree.triangles.size(); ++i)
+    slots[scene.tree.triangles[i].id] = static_cast<std::uint32_t>(i);
+  for (MovingLight& light : motion.lights)
+    if (light.primitive != MovingLight::none) light.primitive = slots[light.primitive];
   const std::vector<std::uint32_t>& of_spheres = scene.light_list.spheres;
   for (const MotionData::MovingSphere& moving : scene.motion.spheres) {
     if (scene.material_records[scene.sphere_material[moving.sphere]].emission == no_emission)
       continue;
     const std::uint32_t light = of_spheres[moving.sphere];
-    if (motion.light_instances.size() <= light)
-      motion.light_instances.resize(light + 1, Motion::none);
-    motion.light_instances[light] = moving.sphere | Motion::of_sphere;
+    if (motion.lights.size() <= light) motion.lights.resize(light + 1);
+    motion.lights[light].primitive = moving.sphere;
   }
   motion.update_view();
 }

@@ -34,23 +34,18 @@ bool has_primitives_only(const SceneData& scene) {
 
 namespace {
 
-bool has_deforming_emitters(const SceneData& scene) {
-  return std::ranges::any_of(scene.meshes, [&](const Mesh& mesh) {
-    return !mesh.end_positions.empty() &&
-           !is_black(scene.materials[mesh.material].emission.radiance);
-  });
-}
-
-/// Whether a sphere or an instance that moves has a material for which `is_wanted` is true.
+/// Whether a sphere or an instance that moves or a mesh that deforms has a material for which
+/// `is_wanted` is true.
 template <class Wanted>
 bool any_moves(const SceneData& scene, Wanted&& is_wanted) {
   for (const MotionData::MovingSphere& moving : scene.motion.spheres)
     if (is_wanted(scene.materials[scene.sphere_material[moving.sphere]])) return true;
-  return std::ranges::any_of(scene.motion.instances, [&](const auto& moving) {
-    return std::ranges::any_of(scene.meshes, [&](const Mesh& mesh) {
-      return mesh.group == scene.instances[moving.instance].group &&
-             is_wanted(scene.materials[mesh.material]);
-    });
+  return std::ranges::any_of(scene.meshes, [&](const Mesh& mesh) {
+    const auto is_of = [&](const MotionData::MovingInstance& moving) {
+      return scene.instances[moving.instance].group == mesh.group;
+    };
+    return is_wanted(scene.materials[mesh.material]) &&
+           (mesh.vertex_sets() > 1 || std::ranges::any_of(scene.motion.instances, is_of));
   });
 }
 
@@ -69,9 +64,7 @@ bool has_moving_grids(const SceneData& scene) {
     return medium.density_grid != no_grid || medium.albedo_grid != no_grid ||
            medium.emission_grid != no_grid;
   };
-  return any_moves(scene, is_filled) || std::ranges::any_of(scene.meshes, [&](const Mesh& mesh) {
-           return !mesh.end_positions.empty() && is_filled(scene.materials[mesh.material]);
-         });
+  return any_moves(scene, is_filled);
 }
 
 /// What edits of materials and lights may change.
@@ -79,7 +72,6 @@ void describe_shading(const SceneData& scene, SceneProperties& properties) {
   properties.has_emitters = std::ranges::any_of(
       scene.material_records, [](const Material& m) { return m.emission != no_emission; });
   properties.has_moving_emitters = has_moving_emitters(scene);
-  properties.has_deforming_emitters = has_deforming_emitters(scene);
   properties.has_moving_grids = has_moving_grids(scene);
   properties.has_rough_conductors = std::ranges::any_of(scene.materials, is_rough_conductor);
   properties.bsdf_kinds = kinds_of(scene);

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
 
@@ -7,7 +5,6 @@
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/accel/build/instance_tree.h"
 #include "common/accel/embree/embree_tree.h"
-#include "common/error/error.h"
 #include "common/scene/data/scene_data.h"
 #include "common/scene/data/scene_facts.h"
 #include "common/scene/prepare/list_lights.h"
@@ -57,18 +54,8 @@ std::vector<CornerAttributes> list_corners(const std::vector<Mesh>& meshes) {
 
 std::vector<Mesh> meshes_at_end(const SceneData& scene) {
   std::vector<Mesh> meshes = scene.meshes;
-  for (std::size_t i = 0; i < meshes.size(); ++i) {
-    Mesh& mesh = meshes[i];
+  for (Mesh& mesh : meshes) {
     if (mesh.end_positions.empty()) continue;
-    const auto check = [&](const char* what, std::size_t end, std::size_t begin) {
-      if (end != begin)
-        throw Error(
-            fmt::format("scene '{}': mesh {} has {} {} when the shutter closes; expected "
-                        "{}, as when it opens",
-                        scene.name, i, end, what, begin));
-    };
-    check("positions", mesh.end_positions.size(), mesh.positions.size());
-    if (!mesh.end_normals.empty()) check("normals", mesh.end_normals.size(), mesh.normals.size());
     mesh.positions = std::move(mesh.end_positions);
     if (!mesh.end_normals.empty()) mesh.normals = std::move(mesh.end_normals);
   }

@@ -237,7 +237,8 @@ void transform_mesh(Mesh& mesh, const Affine& map) {
 }
 
 void turn_mesh(Mesh& mesh) {
-  for (Vec3& normal : mesh.normals) normal = -normal;
+  for (std::vector<Vec3>* normals : {&mesh.normals, &mesh.end_normals})
+    for (Vec3& normal : *normals) normal = -normal;
   for (TriangleIndices& triangle : mesh.triangles) turn(triangle);
 }
 
@@ -251,24 +252,34 @@ void wind_by_normals(Mesh& mesh) {
   }
 }
 
-Mesh back_of(const Mesh& mesh) {
-  Mesh back = mesh;
-  turn_mesh(back);
+namespace {
+
+/// Moves vertices a little, along the normals of their triangles.
+void set_off(std::vector<Vec3>& positions, const std::vector<TriangleIndices>& triangles) {
   Bounds bounds;
-  for (const Vec3& p : mesh.positions) bounds.grow(p);
+  for (const Vec3& p : positions) bounds.grow(p);
   const float extent = glm::length(bounds.max - bounds.min);
   const float reach = std::max(max_abs(bounds.min), max_abs(bounds.max));
   const float offset = std::max(1e-5f * extent, 4e-6f * reach);
-  std::vector<Vec3> normals(mesh.positions.size(), Vec3(0.0f));
-  for (const TriangleIndices& t : back.triangles) {
-    const Vec3& p = back.positions[t.v[0]];
-    const Vec3 n = glm::cross(back.positions[t.v[1]] - p, back.positions[t.v[2]] - p);
+  std::vector<Vec3> normals(positions.size(), Vec3(0.0f));
+  for (const TriangleIndices& t : triangles) {
+    const Vec3& p = positions[t.v[0]];
+    const Vec3 n = glm::cross(positions[t.v[1]] - p, positions[t.v[2]] - p);
     for (const std::uint32_t v : t.v) normals[v] += n;
   }
   for (std::size_t i = 0; i < normals.size(); ++i) {
     const float length = glm::length(normals[i]);
-    if (length > 0.0f) back.positions[i] += (offset / length) * normals[i];
+    if (length > 0.0f) positions[i] += (offset / length) * normals[i];
   }
+}
+
+}  // namespace
+
+Mesh back_of(const Mesh& mesh) {
+  Mesh back = mesh;
+  turn_mesh(back);
+  set_off(back.positions, back.triangles);
+  if (!back.end_positions.empty()) set_off(back.end_positions, back.triangles);
   return back;
 }
 
