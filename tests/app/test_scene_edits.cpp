@@ -304,7 +304,7 @@ TEST(SceneEdits, VerticesThatAreSetNoLongerDeform) {
   SceneData deforming = moving_room();
   Mesh& floor = deforming.meshes.front();
   floor.normals.assign(floor.positions.size(), Vec3(0, 1, 0));
-  ASSERT_FALSE(deforming.meshes[3].end_normals.empty());
+  ASSERT_FALSE(deforming.meshes[3].later_normals.empty());
   const RenderCommand command = edit_command({{"spp", "4"}});
   Editor editor(deforming);
   const Image before = render_now(editor.session, command).image;
@@ -313,7 +313,7 @@ TEST(SceneEdits, VerticesThatAreSetNoLongerDeform) {
   editor.change(editor["meshes.mesh_3.normals"]);
   deforming = editor.session.scene();
   EXPECT_TRUE(deforming.deforms());
-  deforming.meshes[3].end_normals = deforming.meshes[3].normals;
+  deforming.meshes[3].later_normals = {deforming.meshes[3].normals};
   RenderSession same(SceneData{deforming});
   EXPECT_EQ(differing_pixels(expect_as_anew(editor.session, command).image,
                              render_now(same, command).image),

@@ -1,11 +1,50 @@
-// Meshes that deform: as lights, against integrals over time in closed form.
+// Meshes that deform: with many sets of vertices and as lights, against integrals over time in
+// closed form.
 #include <gtest/gtest.h>
 
 #include "common/scene/load/files/meshes/mesh_files.h"
+#include "common/scene/prepare/prepare_scene.h"
+#include "scene/deforming_triangles.h"
 #include "scene/motion_images.h"
 
 namespace pt {
 namespace {
+
+// To the right, half of the way back, and to the right again.
+TEST(DeformingMeshes, OfManySetsAreTheirIntegralOverTime) {
+  SceneData scene = band_scene();
+  Mesh& mesh = scene.meshes[0];
+  for (const float x : {6.0f, 3.0f, 9.0f}) {
+    mesh.later_positions.push_back(mesh.positions);
+    for (Vec3& p : mesh.later_positions.back()) p.x += x;
+  }
+  const auto expected = [](int x) {
+    return (seen_part(x, 6) + seen_part(x, 3, 5, 8) + seen_part(x, 6, 5, 8)) / 3;
+  };
+  const Options options = motion_options(16, 1, 16384);
+  expect_band(image_of_motion(scene, options), expected);
+  expect_band(image_of_motion(scene, options, "brute"), expected);
+  scene.instances.clear(), mesh.group = 0;
+  expect_band(image_of_motion(scene, options), expected);
+}
+
+TEST(DeformingMeshes, AreHeldBetweenTheirSets) {
+  const SceneData scene = glowing_room();
+  for (const float time : {0.0f, 0.3f, 0.5f, 0.9f, 1.0f}) {
+    SceneData held = scene;
+    hold_still_at(held, time);
+    EXPECT_FALSE(held.deforms());
+    for (const std::size_t i : {2u, 3u}) {
+      const std::vector<Vec3> expected = positions_at(scene.meshes[i], double{time});
+      for (std::size_t v = 0; v < 4; ++v)
+        EXPECT_LT(glm::length(held.meshes[i].positions[v] - expected[v]), 1e-6f) << time;
+    }
+  }
+  SceneData turned = glowing_room();  // halfway between its first two normals
+  hold_still_at(turned, 1.0f / 6);
+  const Vec3 n = normalize(Vec3(0, 0, 1) + Vec3(0.6f, 0, 0.8f));
+  EXPECT_LT(glm::length(turned.meshes[3].normals[1] - n), 1e-6f);
+}
 
 /// What takes over the rise of a lamp: its vertices, in the world or in an instance that mirrors,
 /// or an instance that moves.
@@ -23,7 +62,7 @@ SceneData growing_lamp(Rise rise) {
   const bool rises = rise != Rise::by_instance;
   for (Vec3& p : lamp.positions) p = {0, rises ? 1 : 0, 0};
   const float y = rises ? 3 : 0;
-  lamp.end_positions = {{-1, y, -1}, {1, y, -1}, {1, y, 1}, {-1, y, 1}};
+  lamp.later_positions = {{{-1, y, -1}, {1, y, -1}, {1, y, 1}, {-1, y, 1}}};
   if (rise != Rise::in_world) {
     lamp.group = 1;
     scene.instances = {{1, rises ? scale({-1, 1, 1}) : translate({0, 1, 0})}};
@@ -73,10 +112,10 @@ TEST(DeformingMeshes, HaveTheirBacksBehindThemAllTheTime) {
   mesh.normals = std::vector<Vec3>(4, Vec3(0, 0, 1)), end.normals = mesh.normals;
   end.normals[1] = {0, 0.6f, 0.8f};
   const Mesh back = back_of(mesh), end_back = back_of(end);
-  mesh.end_positions = end.positions, mesh.end_normals = end.normals;
+  mesh.later_positions = {end.positions}, mesh.later_normals = {end.normals};
   EXPECT_EQ(back_of(mesh).positions, back.positions);
-  EXPECT_EQ(back_of(mesh).end_positions, end_back.positions);
-  EXPECT_EQ(back_of(mesh).end_normals, end_back.normals);
+  EXPECT_EQ(back_of(mesh).later_positions.at(0), end_back.positions);
+  EXPECT_EQ(back_of(mesh).later_normals.at(0), end_back.normals);
   for (const Vec3& p : end_back.positions) EXPECT_LT(p.z, 4.0f);
 }
 

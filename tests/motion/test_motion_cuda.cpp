@@ -32,7 +32,7 @@ std::vector<SceneData> moving_rooms() {
     auto& moving = scene.motion.instances;
     if (!camera) scene.motion.camera.clear();
     std::erase_if(moving, [&](const auto& m) { return static_cast<int>(m.instance) != instance; });
-    if (!deforming) scene.meshes[3].end_positions.clear(), scene.meshes[3].end_normals.clear();
+    if (!deforming) scene.meshes[3].stop_deforming();
   };
   rooms[1].name = "a camera that moves", keep(rooms[1], true, -1, false);
   rooms[2].name = "an instance that turns", keep(rooms[2], false, 0, false);

@@ -39,8 +39,8 @@ TEST_P(MotionOfSampler, ADeformingSquareIsItsIntegralOverTime) {
   options.sampler = GetParam();
   SceneData scene = band_scene();
   Mesh& mesh = scene.meshes[0];
-  mesh.end_positions = mesh.positions;
-  for (Vec3& p : mesh.end_positions) p.x += 6;
+  mesh.later_positions = {mesh.positions};
+  for (Vec3& p : mesh.later_positions[0]) p.x += 6;
   scene.materials[0] = make_diffuse(Color(0.0f));
   scene.sky.nadir = scene.sky.zenith = Color(1.0f);  // before which it is black
   const auto expected = [](int x) { return 1 - seen_part(x, 6); };
@@ -98,8 +98,8 @@ TEST(MotionLayers, OfWhatGoesAreItsWayWhereItIsSeen) {
   scene.motion.instances = {{0, {{0.0f, {}}, {1.0f, translate({6, -2, 0})}}}};
   SceneData deforming = band_scene();
   deforming.materials[0] = make_diffuse(Color(0.0f));
-  deforming.meshes[0].end_positions = deforming.meshes[0].positions;
-  for (Vec3& p : deforming.meshes[0].end_positions) p += Vec3(6, -2, 0);
+  deforming.meshes[0].later_positions = {deforming.meshes[0].positions};
+  for (Vec3& p : deforming.meshes[0].later_positions[0]) p += Vec3(6, -2, 0);
   for (const char* accel : {"bvh2", "brute"}) {
     for (const SceneData& moving : {scene, deforming}) {
       const MotionLayers layers(moving, 16, 1, 16384, accel);
@@ -157,8 +157,8 @@ TEST(MotionLayers, OfAWheelAreItsChords) {
 
 TEST(MotionLayers, OfAShearedMeshGrowWithItsHeight) {
   SceneData scene = wall_scene();
-  scene.meshes[0].end_positions = scene.meshes[0].positions;
-  for (Vec3& p : scene.meshes[0].end_positions) p.x += 0.75f * p.y;
+  scene.meshes[0].later_positions = {scene.meshes[0].positions};
+  for (Vec3& p : scene.meshes[0].later_positions[0]) p.x += 0.75f * p.y;
   const MotionLayers layers(scene, 24, 16);
   for (std::size_t i = 0; i < layers.count(); ++i)
     expect_near(layers.motion(i), {2 * 0.75f * layers.position(i).y, 0}, i);
@@ -198,7 +198,7 @@ TEST(MotionImages, AreTheSameInAllModesAndStructures) {
     Options options = motion_options(40, 30, 4, 5);
     options.sampler = sampler;
     SceneData stiff = moving_room();  // nothing deforms, so there may be wide trees
-    stiff.meshes[3].end_positions.clear(), stiff.meshes[3].end_normals.clear();
+    stiff.meshes[3].stop_deforming();
     const std::pair<const SceneData, std::vector<std::string>> rooms[] = {
         {moving_room(), {"bvh2", "brute"}},
         {glowing_room(), {"bvh2", "brute"}},
@@ -233,11 +233,11 @@ SceneData room_at(float time) {
   scene.motion = {};
   Mesh& folded = scene.meshes[3];
   for (std::size_t i = 0; i < 4; ++i) {
-    folded.positions[i] += time * (folded.end_positions[i] - folded.positions[i]);
+    folded.positions[i] += time * (folded.later_positions[0][i] - folded.positions[i]);
     folded.normals[i] =
-        normalize(folded.normals[i] + time * (folded.end_normals[i] - folded.normals[i]));
+        normalize(folded.normals[i] + time * (folded.later_normals[0][i] - folded.normals[i]));
   }
-  folded.end_positions.clear(), folded.end_normals.clear();
+  folded.stop_deforming();
   return scene;
 }
 

@@ -105,8 +105,8 @@ TEST(MovingMedia, GoWithTheirBoundaries) {
   expect_band(image_of_motion(scene, motion_options(16, 1, 16384)), expected);
   SceneData deforming = scene;  // on its way, too
   deforming.motion.instances.clear();
-  deforming.meshes[0].end_positions = slab.positions;
-  for (Vec3& p : deforming.meshes[0].end_positions) p.x += 6;
+  deforming.meshes[0].later_positions = {slab.positions};
+  for (Vec3& p : deforming.meshes[0].later_positions[0]) p.x += 6;
   expect_band(image_of_motion(deforming, motion_options(16, 1, 16384)), expected);
   // Shadow rays through it: a floor behind, lit by a sun along the camera's rays.
   scene.sky = {};
@@ -131,9 +131,9 @@ TEST(MovingMedia, WithGridsAreRefused) {
   EXPECT_NE(obstacle().find("does not move with the medium's boundary"), std::string::npos);
   scene.media[1].density_grid = no_grid;
   Mesh& cloud = scene.meshes[4];
-  cloud.end_positions = cloud.positions;
+  cloud.later_positions = {cloud.positions};
   EXPECT_NE(obstacle(), "");
-  cloud.end_positions.clear();
+  cloud.stop_deforming();
   scene.media[0].density_grid = scene.media[2].density_grid;  // around what moves
   EXPECT_EQ(obstacle(), "");
 }
@@ -141,7 +141,7 @@ TEST(MovingMedia, WithGridsAreRefused) {
 TEST(MovingMedia, AreTheSameInAllModesAndStructures) {
   Options options = motion_options(40, 30, 4, 6);
   SceneData stiff = moving_fog_room();  // nothing deforms, so there may be wide trees
-  stiff.meshes[3].end_positions.clear(), stiff.meshes[3].end_normals.clear();
+  stiff.meshes[3].stop_deforming();
   SceneData masked = moving_room();  // without media
   masked.materials[masked.meshes[1].material].opacity = constant_opacity(0.6f);
   const std::pair<const SceneData, std::vector<std::string>> rooms[] = {

@@ -160,12 +160,13 @@ PT_HD InstanceRecord placed_at(InstanceRecord instance, const Motion& motion, fl
 /// The triangle of a slot, its vertices where they are at `time`.
 PT_HD Triangle triangle_at(const TriangleTree& tree, std::uint32_t slot, const Motion& motion,
                            float time) {
-  Triangle triangle = load_wide(&tree.triangles[slot]);
-  if (motion.end_triangles == nullptr) return triangle;
-  const Triangle end = load_wide(&motion.end_triangles[slot]);
-  triangle.v0 = interpolate(triangle.v0, end.v0, time);
-  triangle.v1 = interpolate(triangle.v1, end.v1, time);
-  triangle.v2 = interpolate(triangle.v2, end.v2, time);
+  if (motion.vertex_steps == 0) return load_wide(&tree.triangles[slot]);
+  const VertexTime at = vertex_time(time, motion.vertex_steps);
+  Triangle triangle = motion.triangles.of(tree.triangles, at.set, slot);
+  const Triangle end = motion.triangles.of(tree.triangles, at.set + 1, slot);
+  triangle.v0 = interpolate(triangle.v0, end.v0, at.part);
+  triangle.v1 = interpolate(triangle.v1, end.v1, at.part);
+  triangle.v2 = interpolate(triangle.v2, end.v2, at.part);
   return triangle;
 }
 
@@ -184,14 +185,15 @@ class MovingQuery : public Query {
   PT_HD Triangle triangle(const TriangleTree& tree, std::uint32_t slot) const {
     return triangle_at(tree, slot, motion_, time_);
   }
-  /// Its boxes hold what they do at both ends of the time, and so all between.
+  /// Its boxes hold what they do at both sets of vertices around the time, and so all between.
   PT_HD Bvh2Node node(const TriangleTree& tree, std::uint32_t index) const {
-    Bvh2Node node = load_wide(&tree.bvh2[index]);
-    if (index >= motion_.end_node_count) return node;
-    const Bvh2Node end = load_wide(&motion_.end_nodes[index]);
-    const auto between = [this](const Vec4& a, const Vec4& b) {
-      return Vec4(interpolate(a.x, b.x, time_), interpolate(a.y, b.y, time_),
-                  interpolate(a.z, b.z, time_), interpolate(a.w, b.w, time_));
+    if (index >= motion_.nodes.count) return load_wide(&tree.bvh2[index]);
+    const VertexTime at = vertex_time(time_, motion_.vertex_steps);
+    Bvh2Node node = motion_.nodes.of(tree.bvh2, at.set, index);
+    const Bvh2Node end = motion_.nodes.of(tree.bvh2, at.set + 1, index);
+    const auto between = [&](const Vec4& a, const Vec4& b) {
+      return Vec4(interpolate(a.x, b.x, at.part), interpolate(a.y, b.y, at.part),
+                  interpolate(a.z, b.z, at.part), interpolate(a.w, b.w, at.part));
     };
     for (int i = 0; i < 2; ++i) node.xy[i] = between(node.xy[i], end.xy[i]);
     node.z = between(node.z, end.z);

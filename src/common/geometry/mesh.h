@@ -26,15 +26,26 @@ struct Mesh {
   bool masked = false;      ///< set from the material: see TriangleAttributes
   /// Linear, by vertex and by triangle, or empty: what loaders make a texture of (vertex_colors.h).
   std::vector<Color> colors = {}, face_colors = {};
-  /// Of a mesh that deforms: where the vertices are when the shutter closes, and their normals;
-  /// between, all are linear in time. Empty: they stay.
-  std::vector<Vec3> end_positions = {}, end_normals = {};
+  /// Of a mesh that deforms: more sets of positions, and as many of normals or none, at equally
+  /// spaced times until the shutter closes. Between, all are linear in time. Empty: they stay.
+  std::vector<std::vector<Vec3>> later_positions = {}, later_normals = {};
 
-  std::size_t vertex_sets() const { return end_positions.empty() ? 1 : 2; }
+  std::size_t vertex_sets() const { return 1 + later_positions.size(); }
   const std::vector<Vec3>& positions_of(std::size_t set) const {
-    return set == 0 ? positions : end_positions;
+    return set == 0 ? positions : later_positions[set - 1];
   }
+  const std::vector<Vec3>& normals_of(std::size_t set) const {
+    return set == 0 || later_normals.empty() ? normals : later_normals[set - 1];
+  }
+  void stop_deforming() { later_positions.clear(), later_normals.clear(); }
 };
+
+/// The mesh as it is at one of its sets of vertices.
+inline Mesh mesh_at(const Mesh& mesh, std::size_t set) {
+  return {mesh.positions_of(set), mesh.triangles, mesh.normals_of(set), mesh.uvs,
+          mesh.material,          mesh.group,     mesh.masked,          mesh.colors,
+          mesh.face_colors};
+}
 
 /// The attributes of a triangle's corners, side by side: four 16-byte loads from two sectors of
 /// memory. Vertices that triangles share are repeated. Their own arrays would be half as large, but

@@ -88,6 +88,32 @@ struct MovingLight {
   std::uint32_t instance = none;  ///< of the triangle; none: it lies in the world
 };
 
+/// A time between two of the sets of vertices that deform: the part of the way from `set` to the
+/// next one.
+struct VertexTime {
+  std::uint32_t set;
+  float part;
+};
+
+/// `steps`: from the first set to the last one; not 0.
+PT_HD VertexTime vertex_time(float time, std::uint32_t steps) {
+  const float at = time * static_cast<float>(steps);
+  const std::uint32_t set = static_cast<std::uint32_t>(at);
+  const std::uint32_t begin = set < steps ? set : steps - 1;
+  return {begin, at - static_cast<float>(begin)};
+}
+
+/// What all sets but the first have of vertices that deform; the first is the scene's own array.
+template <class Element>
+struct LaterSets {
+  const Element* elements = nullptr;  ///< set after set; null: the first is all
+  std::uint32_t count = 0;            ///< of a set
+
+  PT_HD Element of(const Element* first, std::uint32_t set, std::uint32_t i) const {
+    return load_wide(set == 0 ? first + i : elements + (std::size_t{set - 1} * count + i));
+  }
+};
+
 struct Bvh2Node;
 struct Triangle;
 struct CornerAttributes;
@@ -99,11 +125,10 @@ struct Motion {
   const SphereTrack* spheres = nullptr;    ///< [sphere]; null: none moves
   const MovingLight* lights = nullptr;     ///< [light]
   std::uint32_t light_count = 0;           ///< those after them are not moved
-  // Of meshes that deform: what is when the shutter closes. Null: none does.
-  const Triangle* end_triangles = nullptr;        ///< [slot], of which the vertices count
-  const CornerAttributes* end_corners = nullptr;  ///< [triangle id], of which the normals count
-  const Bvh2Node* end_nodes = nullptr;  ///< [node]; the boxes of those that are not over instances
-  std::uint32_t end_node_count = 0;
+  std::uint32_t vertex_steps = 0;          ///< between sets of vertices; 0: no mesh deforms
+  LaterSets<Triangle> triangles;           ///< [slot], of which the vertices count
+  LaterSets<CornerAttributes> corners;     ///< [triangle id], of which the normals count
+  LaterSets<Bvh2Node> nodes;  ///< [node]; the boxes of those that are not over instances
   MotionTrack camera;
   Affine to_camera;  ///< from the world, at the pose that the scene's camera describes
 

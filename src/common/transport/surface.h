@@ -121,14 +121,18 @@ PT_HD Triangle triangle_of(const Scene& scene, std::uint32_t slot, float time) {
 }
 template <class Traits>
 PT_HD CornerAttributes corners_of(const Scene& scene, std::uint32_t triangle_id, float time) {
-  CornerAttributes corners = load_wide(&scene.corners[triangle_id]);
   if constexpr (Traits::has_motion) {
-    if (scene.motion->end_corners == nullptr) return corners;
-    const CornerAttributes end = load_wide(&scene.motion->end_corners[triangle_id]);
-    for (int i = 0; i < 3; ++i)
-      corners.normal[i] = interpolate(corners.normal[i], end.normal[i], time);
+    const Motion& motion = *scene.motion;
+    if (motion.corners.count > 0) {
+      const VertexTime at = vertex_time(time, motion.vertex_steps);
+      CornerAttributes corners = motion.corners.of(scene.corners, at.set, triangle_id);
+      const CornerAttributes end = motion.corners.of(scene.corners, at.set + 1, triangle_id);
+      for (int i = 0; i < 3; ++i)
+        corners.normal[i] = interpolate(corners.normal[i], end.normal[i], at.part);
+      return corners;
+    }
   }
-  return corners;
+  return load_wide(&scene.corners[triangle_id]);
 }
 template <bool has_motion>
 PT_HD Affine to_world_at(const Scene& scene, std::uint32_t index, float time) {

@@ -36,8 +36,8 @@ inline SceneData moving_room() {
   for (Vec3& p : floor.positions) p = {p.x, 0, -p.y};
   Mesh folded = square_of(-2, -1, 0.1f, 1, 1, grey);  // deforms, with its normals
   folded.normals = std::vector<Vec3>(4, Vec3(0, 0, 1));
-  folded.end_positions = {{-2, 0.1f, 1}, {-0.5f, 0.1f, 1}, {-1, 1.5f, 2}, {-2, 1, 0}};
-  folded.end_normals = {{0, 0, 1}, {0.6f, 0, 0.8f}, {0, -0.6f, 0.8f}, {0, 0, 1}};
+  folded.later_positions = {{{-2, 0.1f, 1}, {-0.5f, 0.1f, 1}, {-1, 1.5f, 2}, {-2, 1, 0}}};
+  folded.later_normals = {{{0, 0, 1}, {0.6f, 0, 0.8f}, {0, -0.6f, 0.8f}, {0, 0, 1}}};
   scene.meshes = {floor, square_of(-0.5f, 0.5f, -0.5f, 0.5f, 0, grey, 1),
                   square_of(-0.4f, 0.4f, -0.3f, 0.3f, 0, glow, 2), folded};
   const Affine down = translate({-1, 2, 0}) * rotate({1, 0, 0}, 90);
@@ -54,15 +54,23 @@ inline SceneData moving_room() {
   return scene;
 }
 
-/// The room with lamps that deform: in an instance that moves, in one that stands and mirrors, and
-/// in the world.
+/// The room with lamps that deform, of four sets of vertices: in an instance that moves, in one
+/// that stands and mirrors, and in the world.
 inline SceneData glowing_room() {
   SceneData scene = moving_room();
   scene.name = "lamps that deform";
   Mesh& lamp = scene.meshes[2];
-  lamp.end_positions = {{-0.8f, -0.3f, 0.1f}, {0.4f, -0.6f, 0}, {0.2f, 0.3f, -0.2f}, {-0.4f, 0, 0}};
+  lamp.later_positions = {
+      {{-0.8f, -0.3f, 0.1f}, {0.4f, -0.6f, 0}, {0.2f, 0.3f, -0.2f}, {-0.4f, 0, 0}},
+      {{-0.2f, -0.3f, 0}, {0.2f, -0.3f, 0.1f}, {0.2f, 0.3f, 0}, {-0.2f, 0.3f, 0.1f}},
+      {{-0.3f, -0.2f, 0.2f}, {0.3f, -0.2f, 0.2f}, {0.5f, 0.5f, 0}, {-0.5f, 0.3f, 0}}};
+  Mesh& folded = scene.meshes[3];
+  folded.later_positions.insert(folded.later_positions.end(), {folded.positions, folded.positions});
+  for (Vec3& p : folded.later_positions[1]) p.y += 0.5f;
+  folded.later_normals.insert(folded.later_normals.end(),
+                              {folded.normals, folded.later_normals[0]});
   lamp.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-  scene.meshes[3].material = lamp.material;
+  folded.material = lamp.material;
   scene.materials[lamp.material].emission.texture =
       add_picture(scene, 2, 1, {Color(1.0f), Color(0.25f)});
   scene.instances[2].to_world = scene.instances[2].to_world * scale({-1, 1, 1});

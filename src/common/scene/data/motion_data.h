@@ -33,11 +33,11 @@ struct Shutter {
 /// What the host's kernels read; `view` points to the rest, so it is never copied.
 struct PreparedMotion {
   MotionTracks tracks;
-  std::vector<SphereTrack> spheres;  ///< see Motion
-  std::vector<MovingLight> lights;   ///< see Motion
-  std::vector<Triangle> end_triangles;
-  std::vector<CornerAttributes> end_corners;
-  std::vector<Bvh2Node> end_nodes;
+  std::vector<SphereTrack> spheres;       ///< see Motion
+  std::vector<MovingLight> lights;        ///< see Motion
+  std::vector<Triangle> later_triangles;  ///< see Motion
+  std::vector<CornerAttributes> later_corners;
+  std::vector<Bvh2Node> later_nodes;
   Motion view;
 
   PreparedMotion() = default;
@@ -51,9 +51,9 @@ struct PreparedMotion {
     function(motion.instances, tracks.instances);
     function(motion.spheres, spheres);
     function(motion.lights, lights);
-    function(motion.end_triangles, end_triangles);
-    function(motion.end_corners, end_corners);
-    function(motion.end_nodes, end_nodes);
+    function(motion.triangles.elements, later_triangles);
+    function(motion.corners.elements, later_corners);
+    function(motion.nodes.elements, later_nodes);
   }
   /// When arrays have changed.
   void update_view() {
@@ -61,7 +61,11 @@ struct PreparedMotion {
       pointer = values.empty() ? nullptr : values.data();
     });
     view.light_count = static_cast<std::uint32_t>(lights.size());
-    view.end_node_count = static_cast<std::uint32_t>(end_nodes.size());
+    const auto of_a_set = [this](const auto& sets) {
+      return static_cast<std::uint32_t>(sets.size() / std::max(view.vertex_steps, 1u));
+    };
+    view.triangles.count = of_a_set(later_triangles), view.corners.count = of_a_set(later_corners);
+    view.nodes.count = of_a_set(later_nodes);
   }
 };
 

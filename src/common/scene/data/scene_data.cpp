@@ -138,8 +138,8 @@ Bounds moving_sphere_bounds(const SceneData& scene, std::size_t i) {
 Bounds scene_bounds(const SceneData& scene) {
   std::map<std::uint32_t, Bounds> groups;
   for (const Mesh& mesh : scene.meshes) {
-    for (const Vec3& p : mesh.positions) groups[mesh.group].grow(p);
-    for (const Vec3& p : mesh.end_positions) groups[mesh.group].grow(p);
+    for (std::size_t set = 0; set < mesh.vertex_sets(); ++set)
+      for (const Vec3& p : mesh.positions_of(set)) groups[mesh.group].grow(p);
   }
   Bounds all = groups[0];
   const MotionTracks& motion = scene.motion.tracks();

@@ -139,10 +139,13 @@ struct SceneData {
   LightListData light_list;
   EnvironmentMap environment_map;
 
-  bool deforms() const {
-    return std::ranges::any_of(meshes,
-                               [](const Mesh& mesh) { return !mesh.end_positions.empty(); });
+  /// The most that a mesh has: 1 where none deforms.
+  std::size_t vertex_sets() const {
+    std::size_t most = 1;
+    for (const Mesh& mesh : meshes) most = std::max(most, mesh.vertex_sets());
+    return most;
   }
+  bool deforms() const { return vertex_sets() > 1; }
   /// Whether anything moves while the shutter is open.
   bool moves() const { return motion.moves() || deforms(); }
   std::size_t primitive_count() const { return spheres.size() + quads.size(); }

@@ -276,15 +276,14 @@ class Lister {
       add_rows(
           "meshes." + name + ".vertices", [i](auto& s) -> auto& {
             auto& own = s.meshes[i];
-            if constexpr (requires { own.positions.clear(); })
-              own.end_positions.clear(), own.end_normals.clear();
+            if constexpr (requires { own.positions.clear(); }) own.stop_deforming();
             return own.positions;
           });
       if (mesh.normals.empty()) continue;
       add_rows(
           "meshes." + name + ".normals", [i](auto& s) -> auto& {
             auto& own = s.meshes[i];
-            if constexpr (requires { own.normals.clear(); }) own.end_normals.clear();
+            if constexpr (requires { own.normals.clear(); }) own.later_normals.clear();
             return own.normals;
           });
     }

@@ -180,7 +180,7 @@ class Lister {
   void add_placed(const Mesh& mesh, std::uint32_t first_triangle, std::uint32_t instance,
                   const Affine* to_world, const std::vector<PlacementErrors>& poses) {
     const Emission& emission = scene_.materials[mesh.material].emission;
-    const bool moves = poses.size() > 1 || !mesh.end_positions.empty();
+    const bool moves = poses.size() > 1 || mesh.vertex_sets() > 1;
     if (data_.lights.size() + mesh.triangles.size() > lights_max) {
       throw Error(fmt::format("scene '{}' has more than {} triangles that emit light", scene_.name,
                               lights_max));

@@ -105,15 +105,19 @@ MotionTrack add_track(const std::vector<TransformKey>& keys, const Shutter& shut
 void check_vertex_sets(const SceneData& scene) {
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
     const Mesh& mesh = scene.meshes[i];
-    const auto check = [&](const char* what, std::size_t end, std::size_t begin) {
-      if (end != 0 && end != begin)
-        throw Error(
-            fmt::format("scene '{}': mesh {} has {} {} when the shutter closes; expected "
-                        "{}, as when it opens",
-                        scene.name, i, end, what, begin));
+    const auto check = [&](std::size_t found, std::size_t expected, const char* what) {
+      if (found != expected)
+        throw Error(fmt::format("scene '{}': mesh {}, which deforms, has {} {}; expected {}",
+                                scene.name, i, found, what, expected));
     };
-    check("positions", mesh.end_positions.size(), mesh.positions.size());
-    check("normals", mesh.end_normals.size(), mesh.normals.size());
+    if (mesh.vertex_sets() == 1) continue;
+    check(mesh.vertex_sets(), scene.vertex_sets(), "sets of vertices");
+    if (!mesh.later_normals.empty())
+      check(mesh.later_normals.size() + 1, mesh.vertex_sets(), "sets of normals");
+    for (const std::vector<Vec3>& set : mesh.later_positions)
+      check(set.size(), mesh.positions.size(), "positions in a later set");
+    for (const std::vector<Vec3>& set : mesh.later_normals)
+      check(set.size(), mesh.normals.size(), "normals in a later set");
   }
 }
 
@@ -193,13 +197,17 @@ void hold_still_at(SceneData& scene, float time) {
     camera.look_from = way.point(camera.look_from), camera.look_at = way.point(camera.look_at);
     camera.up = way.vector(camera.up);
   }
-  const auto mix = [part](std::vector<Vec3>& begin, const std::vector<Vec3>& end) {
-    for (std::size_t i = 0; i < end.size(); ++i) begin[i] += part * (end[i] - begin[i]);
+  const auto mix = [](std::vector<Vec3> begin, const std::vector<Vec3>& end, float by) {
+    for (std::size_t i = 0; i < end.size(); ++i) begin[i] += by * (end[i] - begin[i]);
+    return begin;
   };
   for (Mesh& mesh : scene.meshes) {
-    mix(mesh.positions, mesh.end_positions), mix(mesh.normals, mesh.end_normals);
-    if (!mesh.end_normals.empty())
-      for (Vec3& normal : mesh.normals) normal = normalize(normal);
+    if (mesh.vertex_sets() == 1) continue;
+    const auto [set, by] = vertex_time(part, static_cast<std::uint32_t>(mesh.vertex_sets() - 1));
+    mesh.positions = mix(mesh.positions_of(set), mesh.positions_of(set + 1), by);
+    if (mesh.later_normals.empty()) continue;
+    mesh.normals = mix(mesh.normals_of(set), mesh.normals_of(set + 1), by);
+    for (Vec3& normal : mesh.normals) normal = normalize(normal);
   }
   scene.motion.prepared.reset();
   hold_still(scene);

@@ -147,7 +147,7 @@ bool move_camera(SceneData& scene, const CameraParameters& camera, const Options
 
 void hold_still(SceneData& scene) {
   scene.motion.camera.clear(), scene.motion.instances.clear(), scene.motion.spheres.clear();
-  for (Mesh& mesh : scene.meshes) mesh.end_positions.clear(), mesh.end_normals.clear();
+  for (Mesh& mesh : scene.meshes) mesh.stop_deforming();
 }
 
 void resolve_scene(SceneData& scene, const Options& options) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <map>
+#include <span>
 
 #include "common/accel/build/build_nodes.h"
 #include "common/accel/build/build_triangle_tree.h"
@@ -52,54 +53,68 @@ std::vector<CornerAttributes> list_corners(const std::vector<Mesh>& meshes) {
   return corners;
 }
 
-std::vector<Mesh> meshes_at_end(const SceneData& scene) {
-  std::vector<Mesh> meshes = scene.meshes;
-  for (Mesh& mesh : meshes) {
-    if (mesh.end_positions.empty()) continue;
-    mesh.positions = std::move(mesh.end_positions);
-    if (!mesh.end_normals.empty()) mesh.normals = std::move(mesh.end_normals);
-  }
-  return meshes;
+/// A plane of a node's boxes, of 12: minima and maxima take turns.
+float& plane_of(Bvh2Node& node, int i) { return i < 8 ? node.xy[i / 4][i % 4] : node.z[i - 8]; }
+
+/// Widens planes of boxes at all sets of vertices by what interpolation between them rounds.
+void widen(std::span<float* const> planes, bool is_maximum) {
+  float size = 0;
+  for (const float* plane : planes) size = std::max(size, std::abs(*plane));
+  for (float* plane : planes) *plane += (is_maximum ? 8.0f : -8.0f) * half_ulp * size;
 }
 
-/// Widens two ends of a plane by what interpolation between them rounds.
-void widen(float& begin, float& end, float side) {
-  const float size = std::max(std::abs(begin), std::abs(end));
-  begin += side * 8.0f * half_ulp * size, end += side * 8.0f * half_ulp * size;
-}
-
-void widen(Bvh2Node& begin, Bvh2Node& end) {
-  for (int i = 0; i < 4; ++i) {
-    const float side = i % 2 == 0 ? -1.0f : 1.0f;  // minima and maxima take turns
-    for (int child = 0; child < 2; ++child) widen(begin.xy[child][i], end.xy[child][i], side);
-    widen(begin.z[i], end.z[i], side);
-  }
-}
-
-/// The tree, fitted to both ends of the time; its upper level to all of it.
-void prepare_deformation(SceneData& scene) {
-  if (!scene.deforms()) return;
-  const std::vector<Mesh> meshes = meshes_at_end(scene);
-  TriangleTreeData& tree = scene.tree;
-  TriangleTreeData end = tree;
-  refit_triangle_tree(end, meshes, scene.instances);
-  for (std::size_t i = 0; i < tree.groups.size(); ++i) {
-    Bounds& box = tree.groups[i].bounds;
-    box.grow(end.groups[i].bounds);
-    for (int axis = 0; axis < 3; ++axis) {
-      float low = box.min[axis], high = box.max[axis];
-      widen(low, box.min[axis], -1.0f), widen(high, box.max[axis], 1.0f);
+void widen_nodes(std::vector<Bvh2Node>& first, std::vector<Bvh2Node>& later, std::size_t count) {
+  if (count == 0) return;
+  std::vector<float*> planes(1 + later.size() / count);
+  for (std::size_t n = 0; n < count; ++n) {
+    for (int i = 0; i < 12; ++i) {
+      planes[0] = &plane_of(first[n], i);
+      for (std::size_t set = 1; set < planes.size(); ++set)
+        planes[set] = &plane_of(later[(set - 1) * count + n], i);
+      widen(planes, i % 2 != 0);
     }
   }
-  const bool is_flat = tree.instances.empty();
-  rebuild_instance_tree(tree, scene.instances, scene.motion.tracks());
+}
+
+/// The tree, fitted to all sets of vertices; its upper level to all of the time.
+void prepare_deformation(SceneData& scene) {
+  const std::size_t sets = scene.vertex_sets();
+  if (sets == 1) return;
+  TriangleTreeData& tree = scene.tree;
   PreparedMotion& motion = *scene.motion.prepared;
-  motion.end_triangles = std::move(end.triangles);
-  motion.end_nodes = std::move(end.bvh2);
-  if (!is_flat && !motion.end_nodes.empty()) motion.end_nodes.resize(tree.first_top_node);
-  for (std::size_t i = 0; i < motion.end_nodes.size(); ++i)
-    widen(tree.bvh2[i], motion.end_nodes[i]);
-  if (!scene.corners.empty()) motion.end_corners = list_corners(meshes);
+  std::vector<Mesh> meshes = scene.meshes;
+  for (Mesh& mesh : meshes) mesh.stop_deforming();
+  TriangleTreeData then = tree;
+  const auto append = [](auto& all, const auto& set, std::size_t count) {
+    all.insert(all.end(), set.begin(), set.begin() + static_cast<std::ptrdiff_t>(count));
+  };
+  const bool is_flat = tree.instances.empty();
+  const std::size_t nodes = is_flat             ? tree.bvh2.size()
+                            : tree.bvh2.empty() ? 0
+                                                : tree.first_top_node;
+  for (std::size_t set = 1; set < sets; ++set) {
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+      if (scene.meshes[i].vertex_sets() == 1) continue;
+      meshes[i].positions = scene.meshes[i].positions_of(set);
+      meshes[i].normals = scene.meshes[i].normals_of(set);
+    }
+    refit_triangle_tree(then, meshes, scene.instances);
+    append(motion.later_triangles, then.triangles, then.triangles.size());
+    append(motion.later_nodes, then.bvh2, nodes);
+    if (!scene.corners.empty())
+      append(motion.later_corners, list_corners(meshes), scene.corners.size());
+    for (std::size_t i = 0; i < tree.groups.size(); ++i)
+      tree.groups[i].bounds.grow(then.groups[i].bounds);
+  }
+  widen_nodes(tree.bvh2, motion.later_nodes, nodes);
+  for (GroupTree& group : tree.groups) {
+    for (int axis = 0; axis < 3; ++axis) {
+      float *low = &group.bounds.min[axis], *high = &group.bounds.max[axis];
+      widen({&low, 1}, false), widen({&high, 1}, true);
+    }
+  }
+  rebuild_instance_tree(tree, scene.instances, scene.motion.tracks());
+  motion.view.vertex_steps = static_cast<std::uint32_t>(sets - 1);
   motion.update_view();
 }
 

@@ -308,9 +308,9 @@ class Separator {
     }
     for (const auto& [vertex, by] : moved) {
       Mesh& mesh = scene_.meshes[vertex.first];
-      for (std::vector<Vec3>* positions : {&mesh.positions, &mesh.end_positions})
-        if (!positions->empty())
-          (*positions)[vertex.second] = Vec3(DVec3((*positions)[vertex.second]) + by);
+      const auto move = [&](Vec3& p) { p = Vec3(DVec3(p) + by); };
+      move(mesh.positions[vertex.second]);
+      for (std::vector<Vec3>& positions : mesh.later_positions) move(positions[vertex.second]);
     }
   }
 

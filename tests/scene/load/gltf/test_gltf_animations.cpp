@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/math/transform.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "load/expect_near.h"
 #include "load/gltf_files.h"
 #include "load/png_bytes.h"
@@ -245,68 +246,80 @@ TEST(GltfAnimations, TargetsMoveTextureCoordinatesAndColours) {
   EXPECT_EQ(found, 1u);
 }
 
-/// A strip of `rows` pairs of vertices along y, bent by a joint at y = 1; the weights go from one
-/// joint to the other.
-TEST(GltfAnimations, ASkinnedStripBends) {
-  constexpr int rows = 5;
+/// A strip of pairs of vertices along y, bent by the joint of node 2 at y = 1; the weights go from
+/// the joint of node 1 to this one.
+struct Strip : GltfMaker {
+  static constexpr int rows = 5;
   std::vector<float> positions, weights;
-  std::vector<std::uint8_t> joints;
-  std::vector<std::uint16_t> indices;
-  for (int i = 0; i < rows; ++i) {
-    for (int side = 0; side < 2; ++side) {
-      const float second = static_cast<float>(i) / (rows - 1);
-      for (const float x : {side - 0.5f, 2 * second, 0.0f}) positions.push_back(x);
-      for (const float w : {1 - second, second, 0.0f, 0.0f}) weights.push_back(w);
-      for (const int joint : {0, 1, 0, 0}) joints.push_back(static_cast<std::uint8_t>(joint));
+
+  explicit Strip(bool is_colored = false) {
+    std::vector<float> colors;
+    std::vector<std::uint8_t> joints;
+    std::vector<std::uint16_t> indices;
+    for (int i = 0; i < rows; ++i) {
+      for (int side = 0; side < 2; ++side) {
+        const float second = static_cast<float>(i) / (rows - 1);
+        for (const float x : {side - 0.5f, 2 * second, 0.0f}) positions.push_back(x);
+        for (const float w : {1 - second, second, 0.0f, 0.0f}) weights.push_back(w);
+        for (const float c : {second, 0.5f, 1.0f}) colors.push_back(c);
+        for (const int joint : {0, 1, 0, 0}) joints.push_back(static_cast<std::uint8_t>(joint));
+      }
+      const auto v = static_cast<std::uint16_t>(2 * i);
+      if (i + 1 < rows) {
+        for (const int corner : {0, 1, 3, 0, 3, 2})
+          indices.push_back(static_cast<std::uint16_t>(v + corner));
+      }
     }
-    const auto v = static_cast<std::uint16_t>(2 * i);
-    if (i + 1 < rows) {
-      for (const int corner : {0, 1, 3, 0, 3, 2})
-        indices.push_back(static_cast<std::uint16_t>(v + corner));
-    }
+    const auto bytes = [](const auto& values) {
+      return std::string(reinterpret_cast<const char*>(values.data()),
+                         values.size() * sizeof values[0]);
+    };
+    const auto vertex = [&](const auto& values, int type, const char* shape) {
+      return accessor(view(bytes(values)), type, 2 * rows, shape);
+    };
+    mesh({{"attributes",
+           {{"POSITION", vertex(positions, 5126, "VEC3")},
+            {"JOINTS_0", vertex(joints, 5121, "VEC4")},
+            {"WEIGHTS_0", vertex(weights, 5126, "VEC4")}}},
+          {"indices", accessor(view(bytes(indices)), 5123, indices.size(), "SCALAR")}});
+    if (is_colored)
+      root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = vertex(colors, 5126, "VEC3");
+    root["nodes"] = {{{"mesh", 0}, {"skin", 0}, {"translation", {50, 0, 0}}},
+                     {{"children", {2}}, {"translation", {0, 0, 0}}},
+                     {{"translation", {0, 1, 0}}}};
+    root["scenes"][0]["nodes"] = {0, 1};
+    root["skins"] = {{{"joints", {1, 2}}}};
+    root["skins"][0]["inverseBindMatrices"] =
+        accessor(view(bytes_of<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0,  0, 1,  //
+                                       1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1})),
+                 5126, 2, "MAT4");
   }
-  const auto bytes = [](const auto& values) {
-    return std::string(reinterpret_cast<const char*>(values.data()),
-                       values.size() * sizeof values[0]);
-  };
-  GltfMaker maker;
-  const auto vertex = [&](const auto& values, int type, const char* shape) {
-    return maker.accessor(maker.view(bytes(values)), type, 2 * rows, shape);
-  };
-  maker.mesh(
-      {{"attributes",
-        {{"POSITION", vertex(positions, 5126, "VEC3")},
-         {"JOINTS_0", vertex(joints, 5121, "VEC4")},
-         {"WEIGHTS_0", vertex(weights, 5126, "VEC4")}}},
-       {"indices", maker.accessor(maker.view(bytes(indices)), 5123, indices.size(), "SCALAR")}});
-  maker.root["nodes"] = {{{"mesh", 0}, {"skin", 0}, {"translation", {50, 0, 0}}},
-                         {{"children", {2}}, {"translation", {0, 0, 0}}},
-                         {{"translation", {0, 1, 0}}}};
-  maker.root["scenes"][0]["nodes"] = {0, 1};
-  maker.root["skins"] = {{{"joints", {1, 2}}}};
-  maker.root["skins"][0]["inverseBindMatrices"] = maker.accessor(
-      maker.view(bytes_of<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0,  0, 1,  //
-                                  1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1})),
-      5126, 2, "MAT4");
-  const int keys = maker.floats({0, 1}, "SCALAR");
+
+  /// A vertex when the joint has turned by `angle` about z, and both have gone by `z`.
+  Vec3 bent(std::size_t v, double angle, double z = 0) const {
+    const double c = std::cos(angle), s = std::sin(angle);
+    const auto x = double{positions[3 * v]}, y = double{positions[3 * v + 1]};
+    const auto w = double{weights[4 * v + 1]};
+    const double bent_x = c * x - s * (y - 1), bent_y = s * x + c * (y - 1) + 1;
+    return Vec3(glm::dvec3((1 - w) * x + w * bent_x, (1 - w) * y + w * bent_y, z));
+  }
+};
+
+TEST(GltfAnimations, ASkinnedStripBends) {
+  Strip strip;
+  const int keys = strip.floats({0, 1}, "SCALAR");
   const float h = std::sqrt(0.5f);
-  animate(maker, 2, "rotation", keys, maker.floats({0, 0, 0, 1, 0, 0, h, h}, "VEC4"));
-  animate(maker, 1, "translation", keys, maker.floats({0, 0, 0, 0, 0, 4}, "VEC3"));
+  animate(strip, 2, "rotation", keys, strip.floats({0, 0, 0, 1, 0, 0, h, h}, "VEC4"));
+  animate(strip, 1, "translation", keys, strip.floats({0, 0, 0, 0, 0, 4}, "VEC3"));
   // The mesh's node moves, too, without effect.
-  animate(maker, 0, "translation", keys, maker.floats({0, 9, 0, 9, 0, 0}, "VEC3"));
+  animate(strip, 0, "translation", keys, strip.floats({0, 9, 0, 9, 0, 0}, "VEC3"));
   for (const double time : {0.0, 0.4, 1.0}) {
-    const Loaded loaded = at_time(maker, static_cast<float>(time));
-    const double angle = time * 3.14159265358979 / 2, c = std::cos(angle), s = std::sin(angle);
-    ASSERT_EQ(first_mesh(loaded).positions.size(), 2u * rows);
-    for (std::size_t v = 0; v < 2 * rows; ++v) {
-      const double x = positions[3 * v], y = positions[3 * v + 1], w = weights[4 * v + 1];
-      const double bent_x = c * x - s * (y - 1), bent_y = s * x + c * (y - 1) + 1;
-      expect_near(first_mesh(loaded).positions[v],
-                  {static_cast<float>((1 - w) * x + w * bent_x),
-                   static_cast<float>((1 - w) * y + w * bent_y), static_cast<float>(4 * time)});
-    }
+    const Loaded loaded = at_time(strip, static_cast<float>(time));
+    ASSERT_EQ(first_mesh(loaded).positions.size(), 2u * Strip::rows);
+    for (std::size_t v = 0; v < 2 * Strip::rows; ++v)
+      expect_near(first_mesh(loaded).positions[v], strip.bent(v, time * pi_f / 2, 4 * time));
   }
-  expect_near(Loaded(maker).scene.meshes.at(0).positions[2 * rows - 1], {0.5f, 2, 0});
+  expect_near(Loaded(strip).scene.meshes.at(0).positions[2 * Strip::rows - 1], {0.5f, 2, 0});
 }
 
 TEST(GltfAnimations, CamerasAndLampsMoveWithTheirNodes) {
@@ -511,9 +524,62 @@ TEST(GltfShutter, MorphTargetsDeformMeshes) {
   const Loaded loaded = open_for(maker, 0, 1);
   const Mesh& mesh = first_mesh(loaded);
   EXPECT_FALSE(loaded.scene.motion.moves());
-  ASSERT_EQ(mesh.end_positions.size(), mesh.positions.size());
+  ASSERT_EQ(mesh.vertex_sets(), 2u);  // linear all the time
   expect_near(mesh.positions[0], {0, 1, 0});
-  expect_near(mesh.end_positions[0], {0.25f, 0.5f, 0});
+  expect_near(mesh.later_positions[0][0], {0.25f, 0.5f, 0});
+}
+
+// Deformations have the sets of vertices that they need: two for what is linear.
+TEST(GltfShutter, MorphTargetsMayGoAndComeBack) {
+  GltfMaker maker = morphing_triangle();
+  animate(maker, 0, "weights", maker.floats({0, 0.5f, 1}, "SCALAR"),
+          maker.floats({0, 0, 1, 0, 0, 0}, "SCALAR"));
+  const Loaded loaded = open_for(maker, 0, 1);
+  const Mesh& mesh = first_mesh(loaded);
+  ASSERT_EQ(mesh.vertex_sets(), 3u);
+  expect_near(mesh.positions_of(1)[0], {1, 0, 0});
+  EXPECT_EQ(mesh.positions_of(2), mesh.positions);
+  EXPECT_EQ(open_for(maker, 5, 1).scene.vertex_sets(), 1u);  // they stay
+}
+
+TEST(GltfShutter, ASkinThatTurnsByHalfACircle) {
+  Strip strip;
+  animate(strip, 2, "rotation", strip.floats({0, 0.5f, 1}, "SCALAR"),
+          strip.floats({0, 0, 0, 1, 0, 0, std::sqrt(0.5f), std::sqrt(0.5f), 0, 0, 1, 0}, "VEC4"));
+  const auto sets = [&](float shutter) { return open_for(strip, 0, shutter).scene.vertex_sets(); };
+  EXPECT_EQ(sets(2 / 180.0f), 2u);  // so many degrees
+  EXPECT_EQ(sets(45 / 180.0f), 9u);
+  const SceneData scene = open_for(strip, 0, 1).scene;
+  const Mesh& mesh = scene.meshes.at(0);
+  ASSERT_EQ(mesh.vertex_sets(), 17u);
+  for (std::size_t v = 0; v < 2 * Strip::rows; ++v)
+    for (std::size_t set = 0; set < 17; ++set)
+      expect_near(mesh.positions_of(set)[v], strip.bent(v, static_cast<double>(set) * pi_f / 16));
+  // Between two sets a vertex is on the chord of its arc about the joint.
+  for (const float time : {0.03f, 0.47f, 0.71f, 0.97f}) {
+    SceneData held = scene;
+    hold_still_at(held, time);
+    for (std::size_t v = 0; v < 2 * Strip::rows; ++v)
+      EXPECT_LT(glm::length(held.meshes.at(0).positions[v] - strip.bent(v, time * pi_f)),
+                1.12f * (1 - std::cos(pi_f / 32)) + 1e-5f)
+          << v << " at " << time;
+  }
+}
+
+// Colours of vertices give each corner of a triangle a vertex of its own, at all times.
+TEST(GltfShutter, WhatDeformsMayHaveColours) {
+  Strip strip(true);
+  animate(strip, 2, "rotation", strip.floats({0, 1}, "SCALAR"),
+          strip.floats({0, 0, 0, 1, 0, 0, std::sqrt(0.5f), std::sqrt(0.5f)}, "VEC4"));
+  const Loaded loaded = open_for(strip, 0, 1);
+  const Mesh& mesh = first_mesh(loaded);
+  ASSERT_GT(mesh.vertex_sets(), 2u);
+  ASSERT_EQ(mesh.positions.size(), 3 * mesh.triangles.size());
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    std::size_t own = 0;
+    while (glm::length(strip.bent(own, 0) - mesh.positions[v]) > 1e-6f) ++own;
+    expect_near(mesh.later_positions.back().at(v), strip.bent(own, pi_f / 2));
+  }
 }
 
 TEST(GltfAnimations, WithoutATimeOrWithoutAnimations) {

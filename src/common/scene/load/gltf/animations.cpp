@@ -287,32 +287,30 @@ void pose_nodes(File& file, const LoadOptions& options, float after_s) {
       left_out, animations.size(), list_of(animations)));
 }
 
-namespace {
-
-/// Intervals between the times at which all is placed.
-constexpr int shutter_steps = 16;
-
-}  // namespace
-
 MovingNodes place_moving_nodes(File& file, const LoadOptions& options) {
   if (!options.shutter) {
     pose_nodes(file, options);
-    return {place_nodes(file), {}, {}};
+    return {place_nodes(file), {}};
   }
   if (!options.time) file.fail("", "--shutter: expected --time, when it opens");
   const std::vector<tinygltf::Node> nodes = file.model.nodes;
-  const auto seconds = [&](int i) {
+  const auto seconds = [&](std::size_t i) {
     return *options.shutter * static_cast<float>(i) / shutter_steps;
   };
   MovingNodes result;
+  result.later.resize(shutter_steps);
   std::vector<std::vector<PlacedNode>> at(shutter_steps + 1);
-  for (int i = shutter_steps; i >= 0; --i) {  // what it opens on comes last and stays
+  for (std::size_t i = shutter_steps + 1; i-- > 0;) {  // what it opens on comes last and stays
     file.model.nodes = nodes;
     pose_nodes(file, options, seconds(i));
-    at[static_cast<std::size_t>(i)] = place_nodes(file);
-    if (i < shutter_steps) continue;
-    for (const auto& node : file.model.nodes) result.end_weights.push_back(node.weights);
-    for (const PlacedNode& node : at.back()) result.end_places[node.node] = node.to_world;
+    at[i] = place_nodes(file);
+    if (i == 0) break;
+    MovingNodes::Then& then = result.later[i - 1];
+    for (const PlacedNode& node : at[i]) {
+      const auto& weights = file.model.nodes[static_cast<std::size_t>(node.node)].weights;
+      if (!weights.empty()) then.weights[node.node] = weights;
+      if (!file.model.skins.empty()) then.places[node.node] = node.to_world;
+    }
   }
   result.nodes = at[0];
   bool lamps = false;
@@ -320,8 +318,8 @@ MovingNodes place_moving_nodes(File& file, const LoadOptions& options) {
     PlacedNode& node = result.nodes[n];
     std::vector<TransformKey> keys;
     bool moves = false;
-    for (int i = 0; i <= shutter_steps; ++i) {
-      const auto& then = at[static_cast<std::size_t>(i)];
+    for (std::size_t i = 0; i <= shutter_steps; ++i) {
+      const auto& then = at[i];
       if (n >= then.size() || then[n].node != node.node) break;  // some overflow at times
       keys.push_back({seconds(i), then[n].to_world});
       moves = moves || keys.back().to_world != node.to_world;

@@ -32,7 +32,7 @@ void report_ignored(File& file) {
 /// moved by a skin, which no two nodes share here.
 struct Shape {
   int mesh = -1;
-  std::vector<double> weights, end_weights;  ///< the latter as the shutter closes
+  std::vector<std::vector<double>> weights;  ///< at the times of keys; one: they stay
   int skinned_by = -1;                       ///< the node with the skin, -1: none
 
   auto operator<=>(const Shape&) const = default;
@@ -57,17 +57,63 @@ Uses uses_of_meshes(File& file, const MovingNodes& moving) {
       continue;
     }
     const auto& mesh = file.model.meshes[static_cast<std::size_t>(source.mesh)];
-    Shape shape{source.mesh,
-                weights_of(source.weights, mesh.weights),
-                {},
-                source.skin >= 0 ? node.node : -1};
-    shape.end_weights =
-        moving.end_weights.empty()
-            ? shape.weights
-            : weights_of(moving.end_weights[static_cast<std::size_t>(node.node)], mesh.weights);
+    Shape shape{
+        source.mesh, {weights_of(source.weights, mesh.weights)}, source.skin >= 0 ? node.node : -1};
+    for (const MovingNodes::Then& then : moving.later) {
+      const auto own = then.weights.find(node.node);
+      shape.weights.push_back(weights_of(
+          own == then.weights.end() ? std::vector<double>() : own->second, mesh.weights));
+    }
+    if (std::ranges::count(shape.weights, shape.weights[0]) == std::ssize(shape.weights))
+      shape.weights.resize(1);
     uses[shape].push_back(&node);
   }
   return uses;
+}
+
+/// Whether each `stride`-th set of vertices has the others between them, to within 1/1000 of the
+/// mesh's size.
+bool is_enough(const Mesh& mesh, std::size_t stride) {
+  Bounds bounds;
+  for (std::size_t set = 0; set < mesh.vertex_sets(); ++set)
+    for (const Vec3& p : mesh.positions_of(set)) bounds.grow(p);
+  const float tolerance = 1e-3f * glm::length(bounds.max - bounds.min);
+  for (std::size_t set = 0; set < mesh.vertex_sets(); ++set) {
+    const std::size_t begin = set / stride * stride;
+    if (set == begin) continue;
+    const float part = static_cast<float>(set - begin) / static_cast<float>(stride);
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      const Vec3 &from = mesh.positions_of(begin)[v], &to = mesh.positions_of(begin + stride)[v];
+      if (!(glm::length(from + part * (to - from) - mesh.positions_of(set)[v]) <= tolerance))
+        return false;
+    }
+  }
+  return true;
+}
+
+/// Leaves what deforms the fewest sets of vertices that are enough for each mesh, as many for all:
+/// each one, or one of 2, 4, 8 or 16. Meshes of which all sets are equal stand still.
+void thin_vertex_sets(std::vector<Mesh>& meshes) {
+  std::size_t stride = shutter_steps;
+  for (Mesh& mesh : meshes) {
+    const auto lacks = [&](const auto& normals) { return normals.size() != mesh.normals.size(); };
+    if (mesh.normals.empty() || std::ranges::any_of(mesh.later_normals, lacks))
+      mesh.later_normals.clear();  // some have no direction at times
+    const auto stays = [](const auto& later, const std::vector<Vec3>& first) {
+      return std::ranges::count(later, first) == std::ssize(later);
+    };
+    if (stays(mesh.later_positions, mesh.positions) && stays(mesh.later_normals, mesh.normals))
+      mesh.stop_deforming();
+    while (mesh.vertex_sets() > 1 && stride > 1 && !is_enough(mesh, stride)) stride /= 2;
+  }
+  for (Mesh& mesh : meshes) {
+    for (auto* later : {&mesh.later_positions, &mesh.later_normals}) {
+      std::vector<std::vector<Vec3>> kept;
+      for (std::size_t i = stride; i <= later->size(); i += stride)
+        kept.push_back(std::move((*later)[i - 1]));
+      *later = std::move(kept);
+    }
+  }
 }
 
 bool has_inverses(const PlacedNode& node) {
@@ -83,7 +129,7 @@ class MeshAdder {
         scene_(scene),
         materials_(file, scene),
         colors_(scene, options),
-        end_places_(moving.end_places) {
+        later_(moving.later) {
     for (const PlacedNode& node : moving.nodes) places_[node.node] = node.to_world;
     materials_.read_ahead();
   }
@@ -106,11 +152,12 @@ class MeshAdder {
       }
       for (const Part& part : parts) {
         Mesh mesh = part.mesh;
+        mesh.stop_deforming();
         bake(file_, user->to_world, node_place(user->node), mesh);
-        if (!mesh.end_positions.empty()) {
-          Mesh end = at_end(part.mesh);
-          bake(file_, user->to_world, node_place(user->node), end);
-          set_end(mesh, std::move(end));
+        for (std::size_t set = 1; set < part.mesh.vertex_sets(); ++set) {
+          Mesh then = mesh_at(part.mesh, set);
+          bake(file_, user->to_world, node_place(user->node), then);
+          if (!add_set(mesh, std::move(then))) break;
         }
         push(std::move(mesh), part);
       }
@@ -118,7 +165,10 @@ class MeshAdder {
     if (!instances.empty()) add_group(parts, instances);
   }
 
-  void finish() { colors_.finish(); }
+  void finish() {
+    thin_vertex_sets(scene_.meshes);
+    colors_.finish();
+  }
 
  private:
   struct Part {
@@ -127,56 +177,49 @@ class MeshAdder {
     std::string name = {};
   };
 
-  /// As it is when the shutter closes.
-  static Mesh at_end(const Mesh& mesh) {
-    Mesh end = mesh;
-    end.positions = end.end_positions;
-    if (!end.end_normals.empty()) end.normals = end.end_normals;
-    return end;
-  }
-
-  /// Takes the end of a deformation from the same mesh as it is then. False: it is another one.
-  static bool set_end(Mesh& mesh, Mesh&& end) {
-    mesh.end_positions.clear(), mesh.end_normals.clear();
+  /// Takes a set of vertices from the same mesh as it is later. False: it is another one, and the
+  /// mesh stays as it is at first.
+  static bool add_set(Mesh& mesh, Mesh&& then) {
     const auto same = [](const TriangleIndices& a, const TriangleIndices& b) {
       return std::ranges::equal(a.v, b.v);
     };
-    if (mesh.positions.size() != end.positions.size() ||
-        !std::ranges::equal(mesh.triangles, end.triangles, same))
+    if (mesh.positions.size() != then.positions.size() ||
+        !std::ranges::equal(mesh.triangles, then.triangles, same)) {
+      mesh.stop_deforming();
       return false;
-    if (mesh.positions != end.positions || mesh.normals != end.normals) {
-      mesh.end_positions = std::move(end.positions);
-      if (mesh.normals.size() == end.normals.size()) mesh.end_normals = std::move(end.normals);
     }
+    mesh.later_positions.push_back(std::move(then.positions));
+    mesh.later_normals.push_back(std::move(then.normals));
     return true;
   }
 
   /// With what skins and morph targets make of them until the shutter closes.
   std::vector<Part> read_moving_parts(const Shape& shape, const PlacedNode& user, bool& in_world) {
-    std::vector<Part> parts = read_parts(shape, shape.weights, places_, user, in_world);
-    if (end_places_.empty() || (shape.skinned_by < 0 && shape.end_weights == shape.weights))
-      return parts;
-    bool end_in_world = false;
-    PlacedNode end_user = user;
-    if (!user.keys.empty()) end_user.to_world = user.keys.back().to_world;
-    std::vector<Part> end =
-        read_parts(shape, shape.end_weights, end_places_, end_user, end_in_world);
-    bool is_same = parts.size() == end.size() && in_world == end_in_world;
-    for (std::size_t i = 0; is_same && i < parts.size(); ++i)
-      is_same = set_end(parts[i].mesh, std::move(end[i].mesh));
-    if (!is_same) {
-      for (Part& part : parts) part.mesh.end_positions.clear(), part.mesh.end_normals.clear();
+    std::vector<Part> parts = read_parts(shape, 0, user, in_world);
+    if (shape.skinned_by < 0 && shape.weights.size() == 1) return parts;
+    for (std::size_t key = 1; key <= later_.size(); ++key) {
+      bool then_in_world = false;
+      std::vector<Part> then = read_parts(shape, key, user, then_in_world);
+      bool is_same = parts.size() == then.size() && in_world == then_in_world;
+      for (std::size_t i = 0; is_same && i < parts.size(); ++i)
+        is_same = add_set(parts[i].mesh, std::move(then[i].mesh));
+      if (is_same) continue;
+      for (Part& part : parts) part.mesh.stop_deforming();
       file_.report(fmt::format("meshes[{}]", shape.mesh),
-                   "--shutter: other triangles when the shutter closes: the mesh stays as it is "
+                   "--shutter: other triangles while the shutter is open: the mesh stays as it is "
                    "when it opens");
+      break;
     }
     return parts;
   }
 
-  /// `in_world`: a skin has put them into world space.
-  std::vector<Part> read_parts(const Shape& shape, const std::vector<double>& weights,
-                               const std::unordered_map<int, Affine>& places,
-                               const PlacedNode& user, bool& in_world) {
+  /// At the time of a key. `in_world`: a skin has put them into world space.
+  std::vector<Part> read_parts(const Shape& shape, std::size_t key, const PlacedNode& user,
+                               bool& in_world) {
+    const auto& places = key == 0 ? places_ : later_[key - 1].places;
+    const Affine& to_world =
+        user.keys.empty() ? user.to_world : user.keys[std::min(key, user.keys.size() - 1)].to_world;
+    const std::vector<double>& weights = shape.weights[shape.weights.size() == 1 ? 0 : key];
     std::vector<Affine> joints;
     if (shape.skinned_by >= 0) {
       const int skin = file_.model.nodes[static_cast<std::size_t>(shape.skinned_by)].skin;
@@ -193,11 +236,15 @@ class MeshAdder {
         file_.report(place,
                      "a primitive of a skinned mesh without JOINTS_0 and WEIGHTS_0: it is placed "
                      "by its node");
-        bake(file_, user.to_world, place, primitive.mesh);
+        bake(file_, to_world, place, primitive.mesh);
       }
       const int material = primitive.material;
       for (UvPart& uv : split_by_uv_sets(file_, std::move(primitive),
                                          sets_of_textures(file_, material), place)) {
+        if (key > 0) {  // its vertices alone are wanted
+          parts.push_back({std::move(uv.mesh)});
+          continue;
+        }
         uv.mesh.material = materials_.material_index(material, uv.maps);
         const bool shines_back = materials_.shines_on_both_sides(uv.mesh.material);
         colors_.tint(uv.mesh, materials_.is_unlit(material), file_.describe(place));
@@ -237,7 +284,7 @@ class MeshAdder {
   VertexColors colors_;
   const ReadAhead ahead_;
   std::unordered_map<int, Affine> places_;  ///< by node
-  const std::unordered_map<int, Affine>& end_places_;
+  const std::vector<MovingNodes::Then>& later_;
   std::uint32_t groups_ = 0;
 };
 

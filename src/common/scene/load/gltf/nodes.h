@@ -33,12 +33,18 @@ void pose_nodes(File& file, const LoadOptions& options, float after_s = 0.0f);
 /// is reported.
 std::vector<PlacedNode> place_nodes(File& file);
 
+/// Steps between the times of keys while the shutter is open.
+inline constexpr std::size_t shutter_steps = 16;
+
 /// Nodes while the shutter is open.
 struct MovingNodes {
+  struct Then {
+    std::unordered_map<int, Affine> places;                ///< by number of a node
+    std::unordered_map<int, std::vector<double>> weights;  ///< of morph targets, likewise
+  };
+
   std::vector<PlacedNode> nodes;
-  // When it closes; empty without --shutter:
-  std::unordered_map<int, Affine> end_places;    ///< by number of a node
-  std::vector<std::vector<double>> end_weights;  ///< of morph targets, likewise
+  std::vector<Then> later;  ///< at the times of keys but the first; empty without --shutter
 };
 
 /// pose_nodes() and place_nodes() at the options' time; with --shutter also at times until it

@@ -237,8 +237,9 @@ void transform_mesh(Mesh& mesh, const Affine& map) {
 }
 
 void turn_mesh(Mesh& mesh) {
-  for (std::vector<Vec3>* normals : {&mesh.normals, &mesh.end_normals})
-    for (Vec3& normal : *normals) normal = -normal;
+  for (Vec3& normal : mesh.normals) normal = -normal;
+  for (std::vector<Vec3>& normals : mesh.later_normals)
+    for (Vec3& normal : normals) normal = -normal;
   for (TriangleIndices& triangle : mesh.triangles) turn(triangle);
 }
 
@@ -279,7 +280,7 @@ Mesh back_of(const Mesh& mesh) {
   Mesh back = mesh;
   turn_mesh(back);
   set_off(back.positions, back.triangles);
-  if (!back.end_positions.empty()) set_off(back.end_positions, back.triangles);
+  for (std::vector<Vec3>& positions : back.later_positions) set_off(positions, back.triangles);
   return back;
 }
 

@@ -64,7 +64,7 @@ void ColorAtlas::set(std::vector<Color>& texels, std::size_t block, const Color 
 
 void ColorAtlas::add_triangle(const Mesh& mesh, std::size_t triangle_index, Mesh& out) {
   const std::size_t block = used_++;
-  const auto first = static_cast<std::uint32_t>(out.positions.size());
+  const auto first = static_cast<std::uint32_t>(out.uvs.size());
   const auto width = static_cast<double>(2 * per_row_), height = static_cast<double>(2 * rows_);
   // Coordinates are rounded: a triangle keeps this distance, in texels, from the edges of the three
   // texels' triangle, beyond which colours could be negative.
@@ -74,8 +74,6 @@ void ColorAtlas::add_triangle(const Mesh& mesh, std::size_t triangle_index, Mesh
   Color vertices[3], faces[3];
   for (int k = 0; k < 3; ++k) {
     const std::uint32_t v = mesh.triangles[triangle_index].v[k];
-    out.positions.push_back(mesh.positions[v]);
-    if (!mesh.normals.empty()) out.normals.push_back(mesh.normals[v]);
     out.uvs.emplace_back(static_cast<float>((x + (k == 1 ? side : 0.0)) / width),
                          static_cast<float>(1.0 - (y + (k == 2 ? side : 0.0)) / height));
     vertices[k] = mesh.colors.empty() ? Color(1.0f) : mesh.colors[v];
@@ -87,12 +85,20 @@ void ColorAtlas::add_triangle(const Mesh& mesh, std::size_t triangle_index, Mesh
 
 void ColorAtlas::add(Mesh& mesh) {
   Mesh out;
-  out.positions.reserve(3 * mesh.triangles.size());
   out.uvs.reserve(3 * mesh.triangles.size());
-  if (!mesh.normals.empty()) out.normals.reserve(3 * mesh.triangles.size());
   out.triangles.reserve(mesh.triangles.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) add_triangle(mesh, i, out);
-  mesh.positions = std::move(out.positions), mesh.normals = std::move(out.normals);
+  const auto spread = [&](std::vector<Vec3>& by_vertex) {
+    std::vector<Vec3> by_corner;
+    by_corner.reserve(out.uvs.size());
+    for (const TriangleIndices& t : mesh.triangles)
+      for (const std::uint32_t v : t.v) by_corner.push_back(by_vertex[v]);
+    by_vertex = std::move(by_corner);
+  };
+  spread(mesh.positions);
+  if (!mesh.normals.empty()) spread(mesh.normals);
+  for (auto* later : {&mesh.later_positions, &mesh.later_normals})
+    for (std::vector<Vec3>& set : *later) spread(set);
   mesh.uvs = std::move(out.uvs), mesh.triangles = std::move(out.triangles);
 }
 
