@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <limits>
 
@@ -14,11 +15,13 @@
 namespace pt {
 namespace {
 
+[[noreturn]] void refuse(const SceneData& scene, const VolumeData& v, const std::string& problem) {
+  throw Error(fmt::format("scene '{}': a grid of {} x {} x {} voxels: {}", scene.name, v.size[0],
+                          v.size[1], v.size[2], problem));
+}
+
 void check(const SceneData& scene, const VolumeData& v) {
-  const auto fail = [&](const std::string& problem) {
-    throw Error(fmt::format("scene '{}': a grid of {} x {} x {} voxels: {}", scene.name, v.size[0],
-                            v.size[1], v.size[2], problem));
-  };
+  const auto fail = [&](const std::string& problem) { refuse(scene, v, problem); };
   const std::uint64_t voxels = std::uint64_t{v.size[0]} * v.size[1] * v.size[2];
   if (voxels == 0) fail("expected at least one");
   if (v.channels != 1 && v.channels != 3) {
@@ -27,18 +30,40 @@ void check(const SceneData& scene, const VolumeData& v) {
   if (!v.is_sparse() && v.values.size() != voxels * v.channels) {
     fail(fmt::format("{} values; expected {}", v.values.size(), voxels * v.channels));
   }
-  if (scene.grid_nodes.size() + v.nodes.size() > 0xffffffffu) {
-    fail("expected at most 128 GiB of all sparse grids");
-  }
-  if (scene.grid_values.size() + v.values.size() + v.colors.size() > 0xffffffffu) {
-    fail("expected at most 4,294,967,295 values in all grids");
-  }
   for (const float value : v.is_sparse() ? v.colors : v.values) {
     if (!(value >= 0) || !std::isfinite(value)) {
       fail(fmt::format("a value of {}; expected finite ones, at least 0", value));
     }
   }
   if (!is_invertible(v.to_world)) fail("expected a map that has an inverse");
+}
+
+void check_room(const SceneData& scene, const VolumeData& v) {
+  if (scene.grid_nodes.size() + v.nodes.size() > 0xffffffffu) {
+    refuse(scene, v, "expected at most 128 GiB of all sparse grids");
+  }
+  if (scene.grid_values.size() + v.values.size() + v.colors.size() > 0xffffffffu) {
+    refuse(scene, v, "expected at most 4,294,967,295 values in all grids");
+  }
+}
+
+template <class T>
+bool has_at(const std::vector<T>& all, std::size_t first, const std::vector<T>& part) {
+  return first + part.size() <= all.size() &&
+         (part.empty() || std::memcmp(&all[first], part.data(), part.size() * sizeof(T)) == 0);
+}
+
+/// A grid of the scene that has the same voxels, of a cloud that stands in several places.
+const VolumeGrid* find_equal(const SceneData& scene, const VolumeData& v) {
+  const auto is_equal = [&](const VolumeGrid& grid) {
+    return std::equal(std::begin(v.size), std::end(v.size), std::begin(grid.size)) &&
+           grid.channels == v.channels && (grid.interpolates != 0) == v.interpolates &&
+           (grid.root != 0) == v.is_sparse() && grid.root >= v.root &&
+           has_at(scene.grid_values, grid.first, v.is_sparse() ? v.colors : v.values) &&
+           has_at(scene.grid_nodes, grid.root - v.root, v.nodes);
+  };
+  const auto found = std::ranges::find_if(scene.grids, is_equal);
+  return found == scene.grids.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -92,12 +117,6 @@ bool has_empty_rim(const std::uint32_t (&size)[3], std::uint32_t channels, const
 
 std::uint32_t add_grid(SceneData& scene, VolumeData volume) {
   check(scene, volume);
-  VolumeGrid grid;
-  grid.to_unit = inverse(volume.to_world);
-  std::copy(std::begin(volume.size), std::end(volume.size), std::begin(grid.size));
-  grid.first = static_cast<std::uint32_t>(scene.grid_values.size());
-  grid.channels = volume.channels;
-  grid.interpolates = volume.interpolates ? 1 : 0;
   const auto append = [](auto& to, auto&& from) {
     if (to.empty()) {
       to = std::move(from);
@@ -106,14 +125,25 @@ std::uint32_t add_grid(SceneData& scene, VolumeData volume) {
     }
   };
   if (volume.is_sparse()) {
-    grid.root = static_cast<std::uint32_t>(scene.grid_nodes.size()) + volume.root;
-    const SparseHead head{{volume.low[0], volume.low[1], volume.low[2]}};
-    std::memcpy(&volume.nodes[volume.root - 1], &head, sizeof head);
-    append(scene.grid_nodes, std::move(volume.nodes));
-    append(scene.grid_values, std::move(volume.colors));
-  } else {
-    append(scene.grid_values, std::move(volume.values));
+    static_assert(offsetof(SparseHead, low) == 0);
+    std::memcpy(&volume.nodes[volume.root - 1], volume.low, sizeof volume.low);
   }
+  VolumeGrid grid;
+  if (const VolumeGrid* const equal = find_equal(scene, volume)) {
+    grid = *equal;
+  } else {
+    check_room(scene, volume);
+    std::copy(std::begin(volume.size), std::end(volume.size), std::begin(grid.size));
+    grid.first = static_cast<std::uint32_t>(scene.grid_values.size());
+    grid.channels = volume.channels;
+    grid.interpolates = volume.interpolates ? 1 : 0;
+    if (volume.is_sparse()) {
+      grid.root = static_cast<std::uint32_t>(scene.grid_nodes.size()) + volume.root;
+    }
+    append(scene.grid_values, std::move(volume.is_sparse() ? volume.colors : volume.values));
+    append(scene.grid_nodes, std::move(volume.nodes));
+  }
+  grid.to_unit = inverse(volume.to_world);
   scene.grids.push_back(grid);
   return static_cast<std::uint32_t>(scene.grids.size() - 1);
 }

@@ -37,8 +37,8 @@ VolumeData with_rim_of_zeros(const VolumeData& volume);
 /// Whether all of the outermost voxels are 0. `values` as in VolumeData.
 bool has_empty_rim(const std::uint32_t (&size)[3], std::uint32_t channels, const float* values);
 
-/// Adds the grid to the scene and returns its index, for a Medium. Throws Error if the grid
-/// violates VolumeData.
+/// Adds the grid to the scene and returns its index, for a Medium. Grids of equal voxels share them
+/// in memory. Throws Error if the grid violates VolumeData.
 std::uint32_t add_grid(SceneData& scene, VolumeData volume);
 
 /// The largest of the grid's values.

@@ -145,6 +145,12 @@ void bound(SceneData& scene, VolumeGrid& grid) {
   }
 }
 
+/// Whether both are one grid in several places.
+bool share_voxels(const VolumeGrid& a, const VolumeGrid& b) {
+  return a.first == b.first && a.root == b.root && a.channels == b.channels &&
+         a.interpolates == b.interpolates && std::ranges::equal(a.size, b.size);
+}
+
 /// Writes into empty cells how far the next one is that is not: -d, see VolumeGrids. One more than
 /// the nearest of a cell's neighbours: two sweeps find d (Rosenfeld and Pfaltz 1968, 'Distance
 /// functions on digital pictures').
@@ -216,6 +222,14 @@ void prepare_media(SceneData& scene) {
     if (medium.is_homogeneous()) continue;
     VolumeGrid& grid = scene.grids[medium.density_grid];
     if (grid.cells[0] > 0) continue;  // several media may have it
+    const auto same = std::ranges::find_if(scene.grids, [&](const VolumeGrid& other) {
+      return other.cells[0] > 0 && share_voxels(other, grid);
+    });
+    if (same != scene.grids.end()) {
+      std::ranges::copy(same->cells, grid.cells);
+      grid.first_cell = same->first_cell, grid.ends = same->ends;
+      continue;
+    }
     bound(scene, grid);
     if (scene.grid_nodes.empty()) continue;
     measure_empty_space(grid, &scene.majorants[grid.first_cell]);

@@ -64,6 +64,36 @@ TEST_F(PbrtNanovdb, CoefficientsAreOneUnlessTheyAreGiven) {
   EXPECT_EQ(scene.grids.size(), 1u);  // and nothing glows
 }
 
+// Also where the film's white changes the colours that both have.
+TEST_F(PbrtNanovdb, AFileInTwoPlacesIsReadAsOneGrid) {
+  const auto load = [](const std::string& more) {
+    const std::string parameters = "\"float Lescale\" 3 \"float temperaturescale\" 5000";
+    return load_pbrt_text(
+               "Film \"rgb\" \"float whitebalance\" 4000 Camera \"perspective\" WorldBegin " +
+               world_of_gas(gas("two.nvdb", parameters)) + more)
+        .scene;
+  };
+  const auto second = [](const std::string& name) {
+    return "AttributeBegin Translate 7 0 0 MakeNamedMedium \"b\" \"string type\" \"nanovdb\" "
+           "\"string filename\" \"" +
+           nanovdb_path(name) +
+           "\" \"float Lescale\" 3 "
+           "\"float temperaturescale\" 5000 "
+           "MediumInterface \"b\" \"\" Shape \"sphere\" AttributeEnd";
+  };
+  const SceneData one = load(""), two = load(second("two.nvdb"));
+  ASSERT_EQ(two.grids.size(), 4u);
+  EXPECT_EQ(two.grid_values, one.grid_values);
+  EXPECT_EQ(two.grid_nodes.size(), one.grid_nodes.size());
+  const Vec3 warm(3.25f, 4.75f, 5);
+  const Color light = grid_value(one, one.media.at(0).emission_grid, warm);
+  EXPECT_FALSE(is_black(light));
+  for (int i = 0; i < 2; ++i) {
+    expect_near(grid_value(two, two.media.at(i).emission_grid, warm + Vec3(7.0f * i, 0, 0)), light,
+                1e-4f);
+  }
+}
+
 // From a grid with other voxels, elsewhere: 0.75 from the middle of a ball of radius 1.25.
 TEST_F(PbrtNanovdb, TemperaturesAreBlackbodies) {
   const SceneData scene = load_pbrt_silently(pbrt_world(

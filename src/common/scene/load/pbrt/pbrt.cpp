@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "common/error/error.h"
 #include "common/scene/data/scene_data.h"
@@ -37,20 +39,28 @@ DVec3 daylight(double kelvins) {
 /// Lam 1985, by columns.
 const DMat3 cones_of_xyz(0.8951, -0.7502, 0.0389, 0.2664, 1.7135, -0.0685, -0.1614, 0.0367, 1.0296);
 
-/// A grid of colours has them all: it is multiplied by grey.
+/// A grid of colours has them all: its medium multiplies it by grey.
 template <class Balance>
-void balance_medium(SceneData& scene, const Balance& balance, Medium& medium) {
-  if (medium.emission_grid == no_grid || scene.grids[medium.emission_grid].channels == 1) {
-    return balance(medium.emission);
+void balance_media(SceneData& scene, const Balance& balance) {
+  std::set<std::uint32_t> begins;  // of colours, which grids may share
+  for (Medium& medium : scene.media) {
+    if (medium.emission_grid == no_grid || scene.grids[medium.emission_grid].channels == 1) {
+      balance(medium.emission);
+    } else {
+      begins.insert(scene.grids[medium.emission_grid].first);
+    }
   }
-  const VolumeGrid& grid = scene.grids[medium.emission_grid];
-  const std::size_t end =
-      &grid == &scene.grids.back() ? scene.grid_values.size() : (&grid)[1].first;
-  for (std::size_t first = grid.first; first < end; first += 3) {
-    float* const values = &scene.grid_values[first];
-    Color color(values[0], values[1], values[2]);
-    balance(color);
-    for (int c = 0; c < 3; ++c) values[c] = color[c];
+  for (const std::uint32_t begin : begins) {
+    std::size_t end = scene.grid_values.size();
+    for (const VolumeGrid& grid : scene.grids) {
+      if (grid.first > begin) end = std::min<std::size_t>(end, grid.first);
+    }
+    for (std::size_t first = begin; first < end; first += 3) {
+      float* const values = &scene.grid_values[first];
+      Color color(values[0], values[1], values[2]);
+      balance(color);
+      for (int c = 0; c < 3; ++c) values[c] = color[c];
+    }
   }
 }
 
@@ -74,7 +84,7 @@ void balance_lights(SceneData& scene, double kelvins) {
   for (MaterialDescription& material : scene.materials) balance(material.emission.radiance);
   for (Color& pixel : scene.environment.pixels) balance(pixel);
   balance(scene.sky.nadir), balance(scene.sky.zenith);
-  for (Medium& medium : scene.media) balance_medium(scene, balance, medium);
+  balance_media(scene, balance);
 }
 
 }  // namespace
