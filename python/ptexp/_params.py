@@ -36,17 +36,17 @@ def _rows(matrix: List[float]) -> List[List[float]]:
     return [matrix[i : i + 4] for i in range(0, 16, 4)]
 
 
-def _keys(name: str, value: Any) -> Optional[List[Tuple[float, List[float]]]]:
-    """Times and the numbers of matrices, if the value is a list of such pairs."""
+def _keys(name: str, value: Any, kind: str) -> Optional[List[Tuple[float, List[float]]]]:
+    """Times and the numbers of matrices or points, if the value is a list of such pairs."""
     if not isinstance(value, (list, tuple)) or not any(isinstance(one, (list, tuple)) and len(one) == 2 for one in value):
         return None
     keys = []
     for i, pair in enumerate(value):
         try:
-            time, matrix = pair
-            keys.append((float(time), _flat(matrix)))
+            time, place = pair
+            keys.append((float(time), _flat(place)))
         except (TypeError, ValueError):
-            raise Error(f"{name}: key {i}: expected a pair of a time in seconds and a 4x4 matrix") from None
+            raise Error(f"{name}: key {i}: expected a pair of a time in seconds and a {kind}") from None
     return keys
 
 
@@ -77,9 +77,9 @@ class Params(MutableMapping):
     Mitsuba's names are taken as well: ``materials.red.reflectance``, ``red.reflectance.value``,
     ``lamp.emitter.radiance.value``, ``bust.vertex_positions`` (flat or not), ``sensor.to_world``.
 
-    A ``to_world`` moves while the shutter is open if it is a list of pairs of a time in seconds and a
-    matrix, [(t0, M0), (t1, M1)], times ascending; it reads as such a list. A single matrix, or for the
-    camera an origin, target or up, stops it.
+    A ``to_world`` or a sphere's ``center`` moves while the shutter is open if it is a list of pairs of
+    a time in seconds and a matrix or point, [(t0, M0), (t1, M1)], times ascending; it reads as such a
+    list. A single one, or for the camera an origin, target or up, stops it.
 
     A change costs what depends on it: of materials and lights their tables, of an instance the
     tree over instances, of vertices a refit of the mesh's tree (a new tree where that would be a
@@ -125,10 +125,8 @@ class Params(MutableMapping):
         values = self._native.get(index)
         if not shape:
             return values[0]
-        if len(shape) == 1:
-            return tuple(values)
-        keys = self._native.get_keys(index)
-        return [(time, _rows(matrix)) for time, matrix in keys] or _rows(values)
+        show = tuple if len(shape) == 1 else _rows
+        return [(time, show(place)) for time, place in self._native.get_keys(index)] or show(values)
 
     def __setitem__(self, name: str, value: Any) -> None:
         names = self._find(name)
@@ -139,7 +137,8 @@ class Params(MutableMapping):
                 rows = floats(value)
                 self._native.set_rows(index, rows.reshape(-1, 3) if rows.ndim == 1 and rows.size % 3 == 0 else rows)
                 continue
-            keys = _keys(own, value) if shape == (4, 4) else None
+            kind = "4x4 matrix" if shape == (4, 4) else "point" if own.startswith("spheres.") and shape else None
+            keys = _keys(own, value, kind) if kind else None
             if keys is not None:
                 self._native.set_keys(index, keys)
                 continue

@@ -128,9 +128,11 @@ void SceneObject::set(std::size_t parameter, std::span<const float> values) {
 
 SceneObject::Keys SceneObject::get_keys(std::size_t parameter) {
   const auto turn = lock();
+  const SceneParameter& p = parameters_.at(parameter);
   Keys keys;
-  for (const TransformKey& key : parameters_.at(parameter).get_keys(session_->scene()))
-    keys.emplace_back(double{key.time}, matrix_of(key.to_world));
+  if (!p.get_keys) return keys;
+  for (const TransformKey& key : p.get_keys(session_->scene()))
+    keys.emplace_back(double{key.time}, numbers_of_key(p, key.to_world));
   return keys;
 }
 
@@ -138,9 +140,9 @@ void SceneObject::set_keys(std::size_t parameter, const Keys& keys) {
   const auto turn = lock();
   const SceneParameter& p = parameters_.at(parameter);
   std::vector<TransformKey> own;
-  for (const auto& [time, matrix] : keys)
+  for (const auto& [time, numbers] : keys)
     own.push_back({static_cast<float>(time),
-                   affine_of(matrix, fmt::format("{}: key {}", p.name, own.size()))});
+                   affine_of_key(p, numbers, fmt::format("{}: key {}", p.name, own.size()))});
   const std::vector<TransformKey> old = p.get_keys(session_->scene());
   if (own == old) return;
   session_->change_scene(p.changes, [&](SceneData& scene) { p.set_keys(scene, own); });

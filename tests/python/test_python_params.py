@@ -387,6 +387,35 @@ class Motion(TestCase):
             strict.render(**options)
         self.assert_same_bits(scene.render(), ptexp.render(self.room(place=PLACES)))
 
+    def test_a_sphere_has_the_bits_of_its_file(self):
+        def room(places):
+            moves = " ".join(f"ActiveTransform {time} Translate {x} {y} {z}" for time, (x, y, z) in
+                             zip(("StartTime", "EndTime"), places))
+            return self.write("ball.pbrt", 'Film "rgb" "integer xresolution" 32 "integer yresolution" 24 Camera '
+                              f'"perspective" WorldBegin LightSource "infinite" {moves} ActiveTransform All '
+                              'Shape "sphere" "float radius" 0.5')
+
+        places = [(-0.5, 0.25, 4), (1.5, -0.5, 3)]
+        expected = ptexp.render(room(places), spp=4)
+        scene = ptexp.load(room(places[:1] * 2), spp=4)
+        still = scene.render()
+        self.assert_other_image(still, expected)
+        name, = (name for name in scene.params if name.endswith(".center"))
+        keys = list(zip((0, 1), places))
+        scene.params[name] = keys
+        self.assert_same_bits(scene.render(), expected)
+        self.assertEqual(scene.params[name], keys)
+        self.assertEqual(ptexp.load(room(places)).params[name], keys)
+        for wrong, message in (([(0, (1, 2)), (1, (1, 2, 3))], "key 0: 2 numbers; expected 3"),
+                               ([(0, (1, 2, np.nan)), (1, (1, 2, 3))], "key 0: nan: expected finite"),
+                               ([(0, (1, 2, 3)), 4], "key 1: expected a pair of a time in seconds and a point"),
+                               ([(1, (1, 2, 3)), (1, (1, 2, 3))], "key 1 of its motion at 1 s")):
+            with self.assertRaisesRegex(ptexp.Error, f"^{re.escape(name)}: {message}"):
+                scene.params[name] = wrong
+        scene.params[name] = places[0]
+        self.assertEqual(scene.params[name], places[0])
+        self.assert_same_bits(scene.render(), still)
+
     def test_layers_of_motion(self):
         scene = ptexp.load(self.room())
         scene.params["instances.0.to_world"] = self.moving()

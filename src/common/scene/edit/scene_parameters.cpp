@@ -18,6 +18,11 @@ using Values = std::span<const float>;
 Vec3 vector_of(Values v) { return {v[0], v[1], v[2]}; }
 std::vector<float> list_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 
+void check_finite(Values v, const std::string& what) {
+  for (const float x : v)
+    if (!std::isfinite(x)) throw Error(fmt::format("{}: {}: expected finite numbers", what, x));
+}
+
 /// From a space where the camera looks along z, with x to the left and y up; any, if its parameters
 /// describe none.
 Affine view_of(const CameraParameters& camera) {
@@ -51,8 +56,7 @@ class Lister {
   template <class Get, class Set>
   void add(std::string name, std::vector<std::size_t> shape, Get get, Set set) {
     auto checked = [name, set](SceneData& scene, Values values) {
-      for (const float x : values)
-        if (!std::isfinite(x)) throw Error(fmt::format("{}: {}: expected finite numbers", name, x));
+      check_finite(values, name);
       set(scene, values);
     };
     const SceneChanges changes = changes_of(name);
@@ -244,13 +248,44 @@ class Lister {
     return named == scene_.names.materials.end() ? fmt::format("{}_{}", kind, i) : named->second;
   }
 
+  /// Between keys it moves straight on.
+  void add_center(const std::string& name, std::uint32_t i) {
+    using Moving = MotionData::MovingSphere;
+    const auto set_keys = [i](SceneData& scene, const std::vector<TransformKey>& keys) {
+      std::vector<Moving>& moving = scene.motion.spheres;
+      std::erase_if(moving, [i](const Moving& one) { return one.sphere == i; });
+      if (!keys.empty()) moving.push_back({i, keys});
+    };
+    add(
+        name, {3}, [i](const SceneData& scene) { return list_of(scene.spheres[i].center); },
+        [i, set_keys](SceneData& scene, Values v) {
+          scene.spheres[i].center = vector_of(v);
+          set_keys(scene, {});
+        });
+    list_.back().get_keys = [i](const SceneData& scene) {
+      std::vector<TransformKey> keys;
+      const std::vector<Moving>& moving = scene.motion.spheres;
+      const auto own = std::ranges::find(moving, i, &Moving::sphere);
+      if (own == moving.end()) return keys;
+      const Vec3 center = own->own_center(scene.spheres[i].center);
+      for (const TransformKey& key : own->keys)
+        keys.push_back({key.time, translate(key.to_world.point(center))});
+      return keys;
+    };
+    list_.back().set_keys = [name, i, set_keys](SceneData& scene,
+                                                const std::vector<TransformKey>& keys) {
+      check_keys(keys, name);
+      scene.spheres[i].center = keys.front().to_world.point(Vec3(0.0f));
+      set_keys(scene, keys);
+    };
+  }
+
   void add_spheres() {
     std::set<std::string> taken;
     for (std::uint32_t i = 0; i < scene_.spheres.size(); ++i) {
       const auto own = name_of({}, i, or_material("sphere", i, scene_.sphere_material[i]), taken);
       const auto name = "spheres." + own;
-      add_vector(
-          name + ".center", [i](auto& s) -> auto& { return s.spheres[i].center; });
+      add_center(name + ".center", i);
       add(
           name + ".radius", {},
           [i](const SceneData& scene) {
@@ -300,8 +335,7 @@ Affine affine_of(Values v, const std::string& what) {
   static_assert(sizeof(Affine) == 12 * sizeof(float));
   if (v.size() != 16)
     throw Error(fmt::format("{}: {} numbers; expected a 4x4 matrix", what, v.size()));
-  for (const float x : v)
-    if (!std::isfinite(x)) throw Error(fmt::format("{}: {}: expected finite numbers", what, x));
+  check_finite(v, what);
   Affine map;
   std::memcpy(&map.row, v.data(), sizeof(Affine));
   if (v[12] != 0 || v[13] != 0 || v[14] != 0 || v[15] != 1 || !is_invertible(map))
@@ -316,6 +350,17 @@ std::vector<float> matrix_of(const Affine& map) {
   std::memcpy(values.data(), &map.row, sizeof(Affine));
   values.back() = 1.0f;
   return values;
+}
+
+Affine affine_of_key(const SceneParameter& parameter, Values v, const std::string& what) {
+  if (parameter.shape.size() > 1) return affine_of(v, what);
+  if (v.size() != 3) throw Error(fmt::format("{}: {} numbers; expected 3", what, v.size()));
+  check_finite(v, what);
+  return translate(vector_of(v));
+}
+
+std::vector<float> numbers_of_key(const SceneParameter& parameter, const Affine& map) {
+  return parameter.shape.size() > 1 ? matrix_of(map) : list_of(map.point(Vec3(0.0f)));
 }
 
 SceneChanges changes_of(std::string_view parameter) {

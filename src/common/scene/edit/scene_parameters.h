@@ -44,7 +44,8 @@ struct SceneParameter {
   /// Takes as many numbers as get() returns. Throws Error for values that are not possible, having
   /// changed nothing.
   std::function<void(SceneData&, std::span<const float>)> set;
-  // Of transforms, which are 4x4 matrices and may move; set() stops that.
+  // Of transforms, which are 4x4 matrices, and of places, whose keys are translations. Both may
+  // move; set() stops that.
   /// None: it stands still.
   std::function<std::vector<TransformKey>(const SceneData&)> get_keys = {};
   /// Throws Error as set() does.
@@ -54,6 +55,11 @@ struct SceneParameter {
 /// The map of a matrix of 16 numbers, row by row. Throws Error, which begins with `what`.
 Affine affine_of(std::span<const float> matrix, const std::string& what);
 std::vector<float> matrix_of(const Affine& map);
+
+/// The same of a key, which has as many numbers as the parameter. Throws Error, with `what`.
+Affine affine_of_key(const SceneParameter& parameter, std::span<const float> key,
+                     const std::string& what);
+std::vector<float> numbers_of_key(const SceneParameter& parameter, const Affine& map);
 
 /// The parameters of an unprepared scene: its camera, the parameters of its materials, the radiance
 /// of its lights, its instances' places, its meshes' vertices and normals, its spheres. Meshes have
