@@ -100,6 +100,8 @@ TEST(DeformingMeshes, LightWhatIsBelow) {
     };
     Options options = motion_options(8, 8, 1024, 2);
     expect_mean(options, 0.005, "power heuristic");
+    options.light_selection = LightSelection::tree;
+    expect_mean(options, 0.005, "light tree");
     options.mis = MisHeuristic::balance, options.light_selection = LightSelection::uniform;
     expect_mean(options, 0.005, "balance heuristic");
     options.nee = false, options.spp = 16384;

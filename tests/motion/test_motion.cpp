@@ -343,12 +343,6 @@ TEST(Motion, RefusesWhatItDoesNotKnow) {
   expect_refused("mesh 3, which deforms, has 3 sets of normals; expected 2", refusal(torn));
   expect_refused("--integrator mlt knows no motion blur",
                  refusal(moving_room(), [](Options& o) { o.integrator = IntegratorKind::mlt; }));
-  SceneData glowing = moving_room();  // by what deforms alone
-  glowing.meshes[3].material = glowing.meshes[2].material;
-  glowing.instances.clear(), glowing.motion.instances.clear();
-  for (const SceneData& scene : {moving_room(), glowing})
-    expect_refused("--light-selection tree knows no lights that move",
-                   refusal(scene, [](Options& o) { o.light_selection = LightSelection::tree; }));
   SceneData masked = moving_room();
   masked.camera.hides_emitters = true;
   EXPECT_EQ(refusal(masked), "");

@@ -47,6 +47,7 @@ std::vector<SceneData> moving_rooms() {
   masked.materials[masked.meshes[1].material].opacity = constant_opacity(0.6f);
   rooms.push_back(moving_spheres());
   rooms.push_back(glowing_room());
+  rooms.push_back(passing_lamps());  // in a light tree
   return rooms;
 }
 

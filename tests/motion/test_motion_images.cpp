@@ -288,6 +288,21 @@ TEST(MotionImages, AreTheMeanOfScenesThatStandStill) {
                                   options);
 }
 
+TEST(MotionImages, ALightTreeKnowsWhereLampsGo) {
+  Options options = motion_options(64, 6, 16, 2);
+  const SceneData scene = passing_lamps();
+  options.light_selection = LightSelection::power;
+  const auto by_power = means_of(scene, options);
+  options.light_selection = LightSelection::tree;
+  const auto by_tree = means_of(scene, options);
+  expect_same_means(by_power, by_tree, "light tree");
+  double power = 0, tree = 0;
+  for (std::size_t i = 0; i < by_tree.size(); ++i)
+    power += by_power[i].sigma() * by_power[i].sigma(),
+        tree += by_tree[i].sigma() * by_tree[i].sigma();
+  EXPECT_LT(tree, 0.4 * power);
+}
+
 TEST(MotionImages, OfWhiteThingsInAWhiteSkyAreWhite) {
   SceneData scene = moving_room();
   for (MaterialDescription& material : scene.materials) material = make_diffuse(Color(1.0f));

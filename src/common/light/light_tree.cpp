@@ -4,9 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <span>
-
-#include "common/light/lights.h"
 
 namespace pt {
 namespace {
@@ -174,13 +171,13 @@ class Builder {
 
 }  // namespace
 
-LightTreeData build_light_tree(const std::vector<Light>& lights) {
+LightTreeData build_light_tree(std::span<const std::optional<LightBounds>> lights) {
   LightTreeData data;
   data.trail.assign(lights.size(), LightTree::outside);
   std::vector<Item> items;
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    const auto bounds = bounds_of(lights[i]);
-    if (bounds) items.push_back({*bounds, bounds->box.center(), static_cast<std::uint32_t>(i)});
+    if (lights[i])
+      items.push_back({*lights[i], lights[i]->box.center(), static_cast<std::uint32_t>(i)});
   }
   if (items.empty()) return data;
   data.pairs.reserve(items.size());

@@ -3,6 +3,8 @@
 // Lights with Adaptive Tree Splitting'; bounds of the cosines as in pbrt-v4, section 12.6.3).
 #pragma once
 
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "common/light/light.h"
@@ -186,9 +188,9 @@ struct LightTreeData {
   std::uint32_t root = 0;
 };
 
-/// Builds the tree over all lights that have bounds, split by the surface area orientation
-/// heuristic. Without such lights there are no pairs; a single light gets a pair that is never
-/// visited.
-LightTreeData build_light_tree(const std::vector<Light>& lights);
+/// Builds the tree over all lights that have bounds, which are given light by light, split by the
+/// surface area orientation heuristic. Without such lights there are no pairs; a single light gets
+/// a pair that is never visited.
+LightTreeData build_light_tree(std::span<const std::optional<LightBounds>> lights);
 
 }  // namespace pt

@@ -466,9 +466,9 @@ class Planner {
     using enum LightSelection;
     const bool is_given = o_.light_selection != automatic;
     const auto emitters = static_cast<double>(scene_.emitters);
-    plan_.light_selection = is_given ? o_.light_selection
-                            : emitters > c_.few_emitters && !scene_.has_moving_emitters ? tree
-                                                                                        : power;
+    plan_.light_selection = is_given                     ? o_.light_selection
+                            : emitters > c_.few_emitters ? tree
+                                                         : power;
     if (!o_.nee) return;
     decide("light-selection", to_string(plan_.light_selection),
            is_given ? asked

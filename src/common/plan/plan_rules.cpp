@@ -268,8 +268,6 @@ std::string motion_obstacle(const Options& o, const SceneProperties& scene, bool
            "medium, or a boundary that stands";
   if (on_cuda && scene.has_sparse)
     return "on CUDA motion blur knows no sparse grids; expected --volume dense or --device cpu";
-  if (scene.has_moving_emitters && o.light_selection == LightSelection::tree)
-    return "--light-selection tree knows no lights that move; expected power or uniform";
   return "";
 }
 

@@ -27,7 +27,6 @@ struct SceneProperties {
   bool has_sparse = false;           ///< grids of media
   bool has_open_boundaries = false;  ///< surfaces may let light through
   bool has_emitters = false;         ///< surfaces that shine
-  bool has_moving_emitters = false;  ///< some of them, with has_motion
   bool has_moving_grids = false;     ///< surfaces that move bound a medium with a grid
   bool has_rough_conductors = false;
   std::uint32_t bsdf_kinds = 0;  ///< a bit for each MaterialKind that a surface has

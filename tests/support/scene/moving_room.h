@@ -100,4 +100,31 @@ inline SceneData moving_spheres() {
   return scene;
 }
 
+/// Two rows of lamps close above a floor: spheres, and squares that turn. They have come from afar
+/// when the shutter opens. The camera sees the floor beside them.
+inline SceneData passing_lamps() {
+  SceneData scene;
+  scene.name = "passing lamps";
+  scene.camera = {{6, 9, 2.6f}, {6, 0, 2.6f}, {0, 0, 1}, 12.0f, 0.0f, 9.0f};
+  Mesh floor = square_of(-2, 15, -3, 4, 0, scene.add_material(make_diffuse(Color(0.7f))));
+  for (Vec3& p : floor.positions) p = {p.x, 0, -p.y};
+  const auto shining = scene.add_material(make_diffuse(Color(0.0f), Color(30.0f)));
+  Mesh lamp = square_of(-0.1f, 0.1f, -0.1f, 0.1f, 0, shining);
+  lamp.group = 1;
+  scene.meshes = {floor, lamp};
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    const Vec3 place(static_cast<float>(i), 0.4f, 0.0f), way(1, 0, 0), beside(0, 0, 1);
+    const auto keys_of = [&](const Affine& at) {
+      return std::vector<TransformKey>{{-9.0f, translate(-9.0f * way) * at},
+                                       {1.0f, translate(way) * at * rotate({1, 0, 0}, 70)}};
+    };
+    const Affine at = translate(place);
+    scene.instances.push_back({1, keys_of(at)[0].to_world});
+    scene.motion.instances.push_back({i, keys_of(at)});
+    scene.add_sphere(place + beside - 9.0f * way, 0.05f, shining);
+    scene.motion.spheres.push_back({i, keys_of(translate(place + beside))});
+  }
+  return scene;
+}
+
 }  // namespace pt

@@ -53,20 +53,6 @@ Bounds world_bounds(const Bounds& box, const Affine& to_object) {
   return {Vec3(low - margin), Vec3(high + margin)};
 }
 
-/// The box of what lies in `box` in object space while the shutter is open.
-Bounds moving_bounds(const Bounds& box, const MotionTracks& motion, const MotionTrack& track) {
-  Bounds world;
-  const double deviation = sample_poses(motion.segments, track, [&](const Affine& to_world) {
-    world.grow(world_bounds(box, inverse(to_world)));
-  });
-  const glm::dvec3 low(box.min), high(box.max);
-  const double farthest = glm::length(glm::max(glm::abs(low), glm::abs(high)));
-  // Poses between them are rounded, too: a few units of all that is added to a point.
-  const float size = std::max(max_abs(world.min), max_abs(world.max));
-  const float margin = static_cast<float>(1.001 * deviation * farthest) + 32.0f * half_ulp * size;
-  return {world.min - Vec3(margin), world.max + Vec3(margin)};
-}
-
 InstanceRecord make_record(const GroupTree& group, const Affine& to_object, std::size_t index,
                            const MotionTracks& motion) {
   const Bounds bounds = motion.moves(index)
@@ -98,6 +84,19 @@ std::vector<InstanceRecord> place_instances(std::span<const GroupTree> groups,
 }
 
 }  // namespace
+
+Bounds moving_bounds(const Bounds& box, const MotionTracks& motion, const MotionTrack& track) {
+  Bounds world;
+  const double deviation = sample_poses(motion.segments, track, [&](const Affine& to_world) {
+    world.grow(world_bounds(box, inverse(to_world)));
+  });
+  const glm::dvec3 low(box.min), high(box.max);
+  const double farthest = glm::length(glm::max(glm::abs(low), glm::abs(high)));
+  // Poses between them are rounded, too: a few units of all that is added to a point.
+  const float size = std::max(max_abs(world.min), max_abs(world.max));
+  const float margin = static_cast<float>(1.001 * deviation * farthest) + 32.0f * half_ulp * size;
+  return {world.min - Vec3(margin), world.max + Vec3(margin)};
+}
 
 void check_instances(std::span<const Instance> instances) {
   for (std::size_t i = 0; i < instances.size(); ++i) {

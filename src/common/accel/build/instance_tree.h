@@ -17,6 +17,9 @@ void check_instances(std::span<const Instance> instances);
 /// Group 0 and those of the instances, ascending, each once.
 std::vector<std::uint32_t> groups_in_use(std::span<const Instance> instances);
 
+/// The world's box of what lies in `box` in the space of what moves so, while the shutter is open.
+Bounds moving_bounds(const Bounds& box, const MotionTracks& motion, const MotionTrack& track);
+
 /// The upper level alone.
 struct InstanceTree : TreeNodes<NodesVector> {  ///< the root comes first
   std::vector<InstanceRecord> instances;        ///< in the order of the leaves

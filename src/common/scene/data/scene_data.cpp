@@ -123,7 +123,7 @@ Bounds moving_sphere_bounds(const SceneData& scene, std::size_t i) {
   const MotionTracks& motion = scene.motion.tracks();
   const Sphere& sphere = scene.spheres[moving.sphere];
   const Vec3 own = moving.own_center(sphere.center), radius(sphere.radius());
-  Bounds bounds = sphere_bounds(sphere);
+  Bounds bounds;
   const double deviation =
       sample_poses(motion.segments, motion.spheres[i], [&](const Affine& to_world) {
         bounds.grow(to_world.point(own) - radius), bounds.grow(to_world.point(own) + radius);
@@ -145,13 +145,18 @@ Bounds scene_bounds(const SceneData& scene) {
   const MotionTracks& motion = scene.motion.tracks();
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Bounds& group = groups[scene.instances[i].group];
-    all.grow(transformed(group, scene.instances[i].to_world));
-    if (!motion.moves(i)) continue;
-    sample_poses(motion.segments, motion.instances[i],
-                 [&](const Affine& to_world) { all.grow(transformed(group, to_world)); });
+    const auto place = [&](const Affine& to_world) { all.grow(transformed(group, to_world)); };
+    if (motion.moves(i)) {
+      sample_poses(motion.segments, motion.instances[i], place);
+    } else {
+      place(scene.instances[i].to_world);
+    }
   }
-  for (const Sphere& s : scene.spheres) all.grow(sphere_bounds(s));
-  for (std::size_t i = 0; i < motion.spheres.size(); ++i) all.grow(moving_sphere_bounds(scene, i));
+  std::vector<Bounds> spheres;
+  for (const Sphere& s : scene.spheres) spheres.push_back(sphere_bounds(s));
+  for (std::size_t i = 0; i < motion.spheres.size(); ++i)
+    spheres[scene.motion.spheres[i].sphere] = moving_sphere_bounds(scene, i);
+  for (const Bounds& bounds : spheres) all.grow(bounds);
   for (const Quad& q : scene.quads) all.grow(quad_bounds(q));
   return all;
 }

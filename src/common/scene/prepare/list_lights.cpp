@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "common/accel/build/instance_tree.h"
 #include "common/error/error.h"
 #include "common/light/lights.h"
 
@@ -70,6 +71,11 @@ class Lister {
       add_group(scene_.instances[i].group, i, &scene_.instances[i].to_world);
     add_group(0, MovingLight::none, nullptr);
     for (std::size_t i = 0; i < scene_.spheres.size(); ++i) add_sphere(i);
+    for (std::size_t i = 0; i < scene_.motion.spheres.size(); ++i) {
+      const std::uint32_t sphere = scene_.motion.spheres[i].sphere;
+      if (shines(scene_.sphere_material[sphere]))
+        ways_[data_.spheres[sphere]] = moving_sphere_bounds(scene_, i);
+    }
     for (const DeltaLight& light : scene_.delta_lights) {
       if (has_position(light.kind)) add_delta(light);
     }
@@ -78,7 +84,7 @@ class Lister {
       if (!has_position(light.kind)) add_delta(light);
     }
     if (scene_.sun.one_minus_cos > 0.0f) add_sun();
-    if (selection_ == LightSelection::tree) data_.tree = build_light_tree(data_.lights);
+    if (selection_ == LightSelection::tree) data_.tree = build_light_tree(bounds_of_lights());
     if (data_.tree.pairs.empty()) {
       make_table(0);
       share_with_environment(data_.selection.empty() ? 0 : emitter_count_);
@@ -90,6 +96,20 @@ class Lister {
   }
 
  private:
+  /// Lights that move: wherever they are while the shutter is open, and turned in any way. One of a
+  /// weight may begin as a point.
+  std::vector<std::optional<LightBounds>> bounds_of_lights() const {
+    std::vector<std::optional<LightBounds>> result;
+    for (const Light& light : data_.lights) {
+      result.push_back(bounds_of(light));
+      const auto way = ways_.find(static_cast<std::uint32_t>(result.size() - 1));
+      if (way == ways_.end() || !(light.weight > 0.0f)) continue;
+      if (!result.back()) result.back() = {{}, {0, 0, 1}, half_turn, quarter_turn, light.weight};
+      result.back()->box = way->second, result.back()->cone = half_turn;
+    }
+    return result;
+  }
+
   /// The table of the lights from `first` on.
   void make_table(std::size_t first) {
     std::vector<float> weights;
@@ -131,8 +151,8 @@ class Lister {
     }
   }
 
-  bool shines(const Mesh& mesh) const {
-    return !is_black(scene_.materials[mesh.material].emission.radiance);
+  bool shines(std::uint32_t material) const {
+    return !is_black(scene_.materials[material].emission.radiance);
   }
 
   /// A mesh that emits.
@@ -147,7 +167,7 @@ class Lister {
     std::uint32_t first_triangle = 0;
     for (const Mesh& mesh : scene_.meshes) {
       const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
-      if (shines(mesh)) {
+      if (shines(mesh.material)) {
         emissive_meshes_[mesh.group].push_back({&mesh, first_triangle});
         data_.rank.resize(first_triangle + count);
         std::uint32_t& next = ranks[mesh.group];
@@ -186,13 +206,18 @@ class Lister {
                               lights_max));
     }
     const PlacementErrors first(to_world);
+    const MotionTracks& tracks = scene_.motion.tracks();
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
       const std::uint32_t id = first_triangle + static_cast<std::uint32_t>(i);
       Vec3 v[3];
+      Bounds own, world;  // of all sets
       LightError error;
       float area = 0.0f;  // of all sets of vertices, of which the first comes last
       for (std::size_t set = mesh.vertex_sets(); set-- > 0;) {
-        for (int k = 0; k < 3; ++k) v[k] = mesh.positions_of(set)[mesh.triangles[i].v[k]];
+        for (int k = 0; k < 3; ++k) {
+          v[k] = mesh.positions_of(set)[mesh.triangles[i].v[k]];
+          own.grow(v[k]), world.grow(to_world != nullptr ? to_world->point(v[k]) : v[k]);
+        }
         area += 0.5f * glm::length(glm::cross(first.edge(v, 1), first.edge(v, 2)));
         for (const PlacementErrors& pose : poses) error.grow(pose.of_triangle(v));
       }
@@ -214,6 +239,8 @@ class Lister {
       light.emission_texture = emission.texture;
       data_.lights.push_back(Light::of(light));
       if (!moves) continue;
+      ways_[static_cast<std::uint32_t>(data_.lights.size() - 1)] =
+          tracks.moves(instance) ? moving_bounds(own, tracks, tracks.instances[instance]) : world;
       data_.moving.resize(data_.lights.size());
       data_.moving.back() = {id, instance};
     }
@@ -222,8 +249,8 @@ class Lister {
 
   void add_sphere(std::size_t i) {
     data_.spheres.push_back(static_cast<std::uint32_t>(data_.lights.size()));
+    if (!shines(scene_.sphere_material[i])) return;
     const Color& radiance = scene_.materials[scene_.sphere_material[i]].emission.radiance;
-    if (is_black(radiance)) return;
     const Sphere& sphere = scene_.spheres[i];
     SphereLight light;
     light.center = sphere.center;
@@ -257,6 +284,7 @@ class Lister {
   float radius_;
   std::size_t emitter_count_ = 0;                                       ///< that give any light
   std::map<std::uint32_t, std::vector<EmissiveMesh>> emissive_meshes_;  ///< by group
+  std::map<std::uint32_t, Bounds> ways_;                                ///< of lights that move
   LightListData data_;
 };
 

@@ -49,11 +49,6 @@ bool any_moves(const SceneData& scene, Wanted&& is_wanted) {
   });
 }
 
-bool has_moving_emitters(const SceneData& scene) {
-  return any_moves(scene,
-                   [](const MaterialDescription& m) { return !is_black(m.emission.radiance); });
-}
-
 /// Whether something that moves is filled with a medium whose grid stays where it is. (Around it
 /// there may be one.)
 bool has_moving_grids(const SceneData& scene) {
@@ -71,7 +66,6 @@ bool has_moving_grids(const SceneData& scene) {
 void describe_shading(const SceneData& scene, SceneProperties& properties) {
   properties.has_emitters = std::ranges::any_of(
       scene.material_records, [](const Material& m) { return m.emission != no_emission; });
-  properties.has_moving_emitters = has_moving_emitters(scene);
   properties.has_moving_grids = has_moving_grids(scene);
   properties.has_rough_conductors = std::ranges::any_of(scene.materials, is_rough_conductor);
   properties.bsdf_kinds = kinds_of(scene);
