@@ -114,11 +114,11 @@ void shade_all_surfaces(Executor& execute, const WaveBuffers& b,
   execute.run(ShadeSurface<Shading, branching, Source, streams>{context}, surfaces);
 }
 
-/// Masks and media make a scene `mixed` for its rays, but not for its surfaces.
+/// On CUDA masks and media make a scene `mixed` for its rays, but not for its surfaces.
 template <class Traits, Branching branching, class Source, class Executor>
 void shade_surfaces(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
   using Shading = ShadingTraits<Traits>;
-  if constexpr (Traits::has_masks && !Traits::has_motion) {
+  if constexpr (Traits::has_masks && !Traits::has_motion && Traits::accel != Accel::any) {
     if (b.policy.only_triangles)
       return shade_all_surfaces<TrianglesAlone<Shading>, branching>(execute, b, context);
   }

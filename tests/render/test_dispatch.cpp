@@ -54,7 +54,10 @@ TEST(Dispatch, EveryRowOfTheTableHasAKernel) {
       dispatch_traits(CpuSceneKinds{}, traits, [&](auto kind) {
         ++scenes;
         SceneTraits kernel = kind.value();
-        if (kernel.accel == Accel::any) kernel.accel = traits.accel;
+        if (kernel.accel == Accel::any) {
+          EXPECT_EQ(kernel.geometry, Geometry::mixed);
+          kernel.accel = traits.accel, kernel.geometry = traits.geometry;
+        }
         EXPECT_TRUE(kernel == traits);
       });
     }

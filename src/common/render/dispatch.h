@@ -23,10 +23,11 @@ inline constexpr NumberSource number_source<SamplerSource> = NumberSource::sampl
 template <int records>
 inline constexpr NumberSource number_source<CarryingSource<records>> = NumberSource::sampler;
 
-/// The traits of the kernel for such scenes: on a CPU one kernel for all structures renders what is
-/// not the paper's.
+/// The traits of the kernel for such scenes: on a CPU one kernel for all structures and shapes
+/// renders what is not the paper's.
 constexpr SceneTraits kernel_traits(bool on_cuda, SceneTraits scene) {
-  if (!on_cuda && scene.lighting == Lighting::full) scene.accel = Accel::any;
+  if (!on_cuda && scene.lighting == Lighting::full)
+    scene.accel = Accel::any, scene.geometry = Geometry::mixed;
   return scene;
 }
 
@@ -69,6 +70,15 @@ struct CpuKernels {
     return renders_some(false, kernel, has_cpu_kernel);
   }
 };
+
+/// The traits of the kernel that finds the features of such scenes (film_planes.h): features know
+/// no light, and are found once, so few kernels serve all.
+constexpr SceneTraits feature_traits(SceneTraits scene) {
+  const bool is_mixed = scene.geometry != Geometry::spheres_and_quads;
+  if (is_mixed) scene.geometry = Geometry::mixed;
+  if (!is_mixed) scene.lighting = Lighting::sky;
+  return scene;
+}
 
 namespace detail {
 

@@ -93,16 +93,14 @@ Scattering surface_scattering_any(const Scene& scene, const Ray& ray, const Hit&
   return surface_scattering<Shading>(scene, ray, hit, path, settings, policy);
 }
 
-#define PT_ANY(geometry, ...)                                                          \
-  template Scattering                                                                  \
-  surface_scattering_any<Traits<Accel::brute, geometry, Lighting::full, __VA_ARGS__>>( \
+#define PT_ANY(has_media, has_motion)                                                              \
+  template Scattering surface_scattering_any<                                                      \
+      Traits<Accel::brute, Geometry::mixed, Lighting::full, false, has_media, false, has_motion>>( \
       const Scene&, const Ray&, const Hit&, PathState&, const PathSettings&, const EagerShading&);
-PT_ANY(Geometry::triangles, false)
-PT_ANY(Geometry::triangles, false, true)
-PT_ANY(Geometry::mixed, false)
-PT_ANY(Geometry::mixed, false, true)
-PT_ANY(Geometry::mixed, false, false, false, true)
-PT_ANY(Geometry::mixed, false, true, false, true)
+PT_ANY(false, false)
+PT_ANY(true, false)
+PT_ANY(false, true)
+PT_ANY(true, true)
 #undef PT_ANY
 
 }  // namespace pt

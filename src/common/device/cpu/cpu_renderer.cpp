@@ -233,10 +233,12 @@ void CpuRenderer::accumulate_with(const SampleBuffer& batch, MakeSum&& make_sum)
 void CpuRenderer::accumulate_features(const SampleBuffer& batch) {
   const FilmView film = film_view();
   const SamplerSource source = sampler_source_of(plan_);
-  dispatch_traits(CpuSceneKinds{}, traits_, [&](auto traits) {
-    tbb::parallel_for(std::uint32_t{0}, batch.pixel_count.divisor(), [&](std::uint32_t i) {
-      pt::accumulate_features<decltype(traits)>(film, batch, scene_, source, i);
-    });
+  dispatch_traits(CpuSceneKinds{}, feature_traits(traits_), [&](auto traits) {
+    if constexpr (feature_traits(traits.value()) == traits.value()) {
+      tbb::parallel_for(std::uint32_t{0}, batch.pixel_count.divisor(), [&](std::uint32_t i) {
+        pt::accumulate_features<decltype(traits)>(film, batch, scene_, source, i);
+      });
+    }
   });
 }
 

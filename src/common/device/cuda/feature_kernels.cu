@@ -18,14 +18,6 @@ __global__ void find_features(const __grid_constant__ Scene scene,
 }  // namespace
 
 FeatureKernel feature_kernel(const SceneTraits& traits) {
-  // Features know no light, and are found once: few kernels serve all scenes.
-  const bool has_textures = traits.geometry != Geometry::spheres_and_quads;
-  SceneTraits needed = traits;
-  if (has_textures) {
-    needed.geometry = Geometry::mixed;
-  } else {
-    needed.lighting = Lighting::sky;
-  }
   using Kinds =
       TypeList<Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::sky>,
                Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::sky>,
@@ -39,7 +31,8 @@ FeatureKernel feature_kernel(const SceneTraits& traits) {
                Traits<Accel::bvh2, Geometry::mixed, Lighting::full, false, false, false, true>,
                Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true, true, false, true>>;
   FeatureKernel kernel = nullptr;
-  dispatch_traits(Kinds{}, needed, [&](auto kind) { kernel = find_features<decltype(kind)>; });
+  dispatch_traits(Kinds{}, feature_traits(traits),
+                  [&](auto kind) { kernel = find_features<decltype(kind)>; });
   return kernel;
 }
 

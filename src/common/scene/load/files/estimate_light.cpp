@@ -90,12 +90,11 @@ void trace(const Scene& scene, std::vector<PixelSums>& pixels) {
 template <class... Kinds>
 void trace_any(TypeList<Kinds...>, SceneTraits traits, const Scene& scene,
                std::vector<PixelSums>& pixels) {
-  traits.accel = Accel::any;
+  traits.accel = Accel::any, traits.geometry = Geometry::mixed;
   ((Kinds::value() == traits ? trace<Kinds>(scene, pixels) : void()), ...);
 }
 
-using GlimpseKinds = TypeList<Traits<Accel::any, Geometry::triangles, Lighting::full>,
-                              Traits<Accel::any, Geometry::mixed, Lighting::full>,
+using GlimpseKinds = TypeList<Traits<Accel::any, Geometry::mixed, Lighting::full>,
                               Traits<Accel::any, Geometry::mixed, Lighting::full, true>,
                               Traits<Accel::any, Geometry::mixed, Lighting::full, true, true>>;
 
