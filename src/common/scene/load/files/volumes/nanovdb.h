@@ -3,10 +3,9 @@
 
 #include <nanovdb/NanoVDB.h>
 #include <nanovdb/util/IO.h>
-#include <tbb/parallel_for.h>
-#include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -78,6 +77,20 @@ void expect_version(const nanovdb::Version& version);
 /// Throws Error where the grid is damaged.
 GridBytes unpack(const GridEntry& entry);
 
+/// A node; what follows its head belongs to it, too.
+struct NodeBytes {
+  const std::byte* begin;
+  std::uint64_t head, size;
+};
+
+/// From the root's children to the leaves.
+using NodeLevels = std::array<std::vector<NodeBytes>, 3>;
+
+/// Throws Error where nodes overlap, since what is written into one is to change no other, or where
+/// the checksums are others: the CRC-32 of the grid's head, up to `root_end`, and that of the
+/// CRC-32s of all nodes' heads.
+void expect_whole(const GridBytes& bytes, std::uint64_t root_end, NodeLevels levels);
+
 // A grid's tree: walked by offsets that are checked, its nodes listed, its checksums. The place of
 // a node is that of its entry in its parent.
 
@@ -129,6 +142,16 @@ struct Tree {
   std::vector<Placed<Lower>> lowers;
   std::vector<Placed<Leaf>> leaves;
   std::vector<Tile> tiles;
+
+  NodeLevels levels() const {
+    NodeLevels result;
+    const auto fill = [](std::vector<NodeBytes>& level, const auto& nodes) {
+      for (const auto& [node, low] : nodes)
+        level.push_back({reinterpret_cast<const std::byte*>(node), sizeof *node, node->memUsage()});
+    };
+    fill(result[0], uppers), fill(result[1], lowers), fill(result[2], leaves);
+    return result;
+  }
 };
 
 template <class Build>
@@ -162,7 +185,6 @@ class TreeWalk {
     }
     for (const auto& upper : tree_.uppers) add_entries(upper, tree_.lowers, 5, lower_side);
     for (const auto& lower : tree_.lowers) add_entries(lower, tree_.leaves, 4, leaf_side);
-    expect_disjoint();
     return std::move(tree_);
   }
 
@@ -204,25 +226,6 @@ class TreeWalk {
     }
   }
 
-  /// What is written into a node changes no other.
-  void expect_disjoint() const {
-    std::vector<std::pair<const std::byte*, std::uint64_t>> nodes;
-    const auto add_all = [&](const auto& level) {
-      for (const auto& placed : level) {
-        nodes.emplace_back(reinterpret_cast<const std::byte*>(placed.node),
-                           placed.node->memUsage());
-      }
-    };
-    nodes.emplace_back(bytes_.data(), tree_.root_end);
-    add_all(tree_.uppers), add_all(tree_.lowers), add_all(tree_.leaves);
-    std::ranges::sort(nodes);
-    for (std::size_t i = 1; i < nodes.size(); ++i) {
-      if (nodes[i - 1].first + nodes[i - 1].second > nodes[i].first) {
-        throw Error("damaged: nodes used twice");
-      }
-    }
-  }
-
   const GridBytes& bytes_;
   T tree_{};
 };
@@ -250,48 +253,6 @@ IndexBox box_of(const Tree<Build>& tree) {
   for (const auto& leaf : tree.leaves) grow_by_leaf(&leaf.node->mValueMask, leaf.low, box);
   for (const auto& tile : tree.tiles) box.grow(tile.low, tile.low + (tile.side - 1));
   return box;
-}
-
-inline constexpr std::uint32_t no_checksum = 0xffffffff;
-inline constexpr std::uint32_t last_known_minor = 5;  // later versions have other checksums
-
-inline std::uint32_t checksum(const void* data, std::size_t size) {
-  return static_cast<std::uint32_t>(crc32_z(0, static_cast<const Bytef*>(data), size));
-}
-
-template <class Nodes>
-void add_checksums(const Nodes& nodes, std::vector<std::uint64_t>& sums) {
-  const std::size_t first = sums.size();
-  sums.resize(first + nodes.size());
-  tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t i) {
-    sums[first + i] = checksum(nodes[i].node, sizeof *nodes[i].node);
-  });
-}
-
-/// CRC-32 of the head, up to the root's table, and of the CRC-32s of all nodes. Throws Error where
-/// they are others.
-template <class Build>
-void expect_checksums(const GridBytes& bytes, Tree<Build>& tree) {
-  const auto& grid = bytes.at<nanovdb::GridData>(0);
-  if (grid.mVersion.getMinor() > last_known_minor) return;
-  const auto head = static_cast<std::uint32_t>(grid.mChecksum);
-  const auto nodes = static_cast<std::uint32_t>(grid.mChecksum >> 32);
-  constexpr std::size_t first = 16;  // behind the magic number and the checksum
-  if (head == no_checksum) return;
-  bool is_right = head == checksum(bytes.data() + first, tree.root_end - first);
-  if (is_right && nodes != no_checksum && !tree.uppers.empty()) {
-    if (grid.mFlags & static_cast<std::uint32_t>(nanovdb::GridFlags::IsBreadthFirst)) {
-      const auto sort = [](auto& level) {
-        std::ranges::sort(level, {}, [](const auto& placed) { return placed.node; });
-      };
-      sort(tree.uppers), sort(tree.lowers), sort(tree.leaves);
-    }
-    std::vector<std::uint64_t> sums;
-    add_checksums(tree.uppers, sums), add_checksums(tree.lowers, sums);
-    add_checksums(tree.leaves, sums);
-    is_right = nodes == checksum(sums.data(), sums.size() * sizeof sums[0]);
-  }
-  if (!is_right) throw Error("damaged: its checksum is another");
 }
 
 }  // namespace pt::nanovdb_files

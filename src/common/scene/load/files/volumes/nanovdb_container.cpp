@@ -1,5 +1,6 @@
 #include <blosc.h>
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -94,6 +95,13 @@ void unpack_blosc(ByteReader& reader, GridBytes& bytes) {
   }
 }
 
+constexpr std::uint32_t no_checksum = 0xffffffff;
+constexpr std::uint32_t last_known_minor = 5;  // later versions have other checksums
+
+std::uint32_t checksum(const void* data, std::size_t size) {
+  return static_cast<std::uint32_t>(crc32_z(0, static_cast<const Bytef*>(data), size));
+}
+
 }  // namespace
 
 void expect_version(const nanovdb::Version& version) {
@@ -173,6 +181,36 @@ GridBytes unpack(const GridEntry& entry) {
       std::ranges::copy(std::as_bytes(std::span(reader.take(entry.size, "a grid"))), bytes.data());
   }
   return bytes;
+}
+
+void expect_whole(const GridBytes& bytes, std::uint64_t root_end, NodeLevels levels) {
+  std::vector<NodeBytes> nodes = {{bytes.data(), root_end, root_end}};
+  for (const auto& level : levels) nodes.insert(nodes.end(), level.begin(), level.end());
+  std::ranges::sort(nodes, {}, &NodeBytes::begin);
+  for (std::size_t i = 1; i < nodes.size(); ++i) {
+    if (nodes[i - 1].begin + nodes[i - 1].size > nodes[i].begin)
+      throw Error("damaged: nodes used twice");
+  }
+  const auto& grid = bytes.at<nanovdb::GridData>(0);
+  const auto head_sum = static_cast<std::uint32_t>(grid.mChecksum);
+  const auto node_sum = static_cast<std::uint32_t>(grid.mChecksum >> 32);
+  if (grid.mVersion.getMinor() > last_known_minor || head_sum == no_checksum) return;
+  constexpr std::size_t first = 16;  // behind the magic number and the checksum
+  bool is_right = head_sum == checksum(bytes.data() + first, root_end - first);
+  if (is_right && node_sum != no_checksum && !levels[0].empty()) {
+    std::vector<std::uint64_t> sums;
+    for (std::vector<NodeBytes>& level : levels) {
+      if (grid.mFlags & static_cast<std::uint32_t>(nanovdb::GridFlags::IsBreadthFirst))
+        std::ranges::sort(level, {}, &NodeBytes::begin);
+      const std::size_t before = sums.size();
+      sums.resize(before + level.size());
+      tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) {
+        sums[before + i] = checksum(level[i].begin, level[i].head);
+      });
+    }
+    is_right = node_sum == checksum(sums.data(), sums.size() * sizeof sums[0]);
+  }
+  if (!is_right) throw Error("damaged: its checksum is another");
 }
 
 }  // namespace pt::nanovdb_files

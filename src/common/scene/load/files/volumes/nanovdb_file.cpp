@@ -121,8 +121,8 @@ constexpr int farthest_voxel = 1 << 24, side_most = 1 << 20;
 
 template <class Build>
 VolumeData sparse_grid(GridBytes& bytes) {
-  Tree<Build> tree = TreeWalk<Build>(bytes).walk();
-  expect_checksums(bytes, tree);
+  const Tree<Build> tree = TreeWalk<Build>(bytes).walk();
+  expect_whole(bytes, tree.root_end, tree.levels());
   if (tree.root->mBackground != 0) {
     throw Error(fmt::format("a background of {}, expected 0", tree.root->mBackground));
   }
