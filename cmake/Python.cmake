@@ -22,7 +22,7 @@ foreach(target _ptexp nanobind-static)
 endforeach()
 target_include_directories(_ptexp SYSTEM PRIVATE ${NB_DIR}/include)  # no warnings from there
 target_link_libraries(_ptexp PRIVATE ptexp_app)
-ptexp_unite(_ptexp)
+ptexp_unite(_ptexp 16)
 set_target_properties(_ptexp PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${package})
 add_custom_command(OUTPUT ${package}/py.typed
   COMMAND ${CMAKE_COMMAND} -E copy_if_different ${python_sources} ${package}
