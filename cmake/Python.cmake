@@ -1,6 +1,8 @@
 # The Python module ptexp._ptexp (PTEXP_PYTHON), by nanobind: of the Python that pip builds for, or
 # of Python_EXECUTABLE, which needs the package nanobind.
-find_package(Python 3.9 REQUIRED COMPONENTS Interpreter Development.Module)
+# SKBUILD_SABI_COMPONENT: pip's, for a wheel that serves later Pythons as well (scripts/wheel).
+find_package(Python 3.9 REQUIRED COMPONENTS Interpreter Development.Module
+             ${SKBUILD_SABI_COMPONENT})
 if(NOT DEFINED nanobind_DIR)
   execute_process(COMMAND ${Python_EXECUTABLE} -m nanobind --cmake_dir
                   OUTPUT_VARIABLE nanobind_found OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
@@ -15,10 +17,12 @@ set(package ${PROJECT_BINARY_DIR}/python/ptexp)
 file(GLOB python_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/python/ptexp/*.py
      ${PROJECT_SOURCE_DIR}/python/ptexp/py.typed)
 file(GLOB module_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/python/*.cpp)
-nanobind_add_module(_ptexp NB_STATIC NOMINSIZE ${module_sources})
+nanobind_add_module(_ptexp NB_STATIC NOMINSIZE STABLE_ABI ${module_sources})
 # Nothing in these takes long, but their compilation would.
-foreach(target _ptexp nanobind-static)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+foreach(target _ptexp nanobind-static nanobind-static-abi3)
+  if(TARGET ${target})
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
 endforeach()
 target_include_directories(_ptexp SYSTEM PRIVATE ${NB_DIR}/include)  # no warnings from there
 target_link_libraries(_ptexp PRIVATE ptexp_app)
