@@ -10,15 +10,17 @@ debian_release=$(. /etc/os-release && printf '%s' "${VERSION_CODENAME:-}")
 # and the packages that are installed into it later stay in build/bare_debian, for the next one.
 make_bare_debian() {
   local release=$1 tree=$2 kept=${root:?}/build/bare_debian/$1 mirror file options=() script=()
+  local ubuntu_keys=/usr/share/keyrings/ubuntu-archive-keyring.gpg
   ((EUID == 0)) || die "root is needed: debootstrap and chroot"
   install_missing debootstrap
   # shellcheck disable=SC2016 # apt-get's own variables
   mirror=$(apt-get indextargets --format '$(SITE)' "Codename: $debian_release" | head -n 1)
   if [[ $release =~ ^(jammy|noble)$ ]]; then
-    install_missing ubuntu-keyring
     mirror=${PTEXP_UBUNTU_MIRROR:-}
+    # Debian 12 has no such package: there the file must be brought.
+    [[ -z $mirror || -e $ubuntu_keys ]] || install_missing ubuntu-keyring
     # shellcheck disable=SC2054 # one option
-    options=(--components=main,universe --keyring=/usr/share/keyrings/ubuntu-archive-keyring.gpg)
+    options=(--components=main,universe --keyring="$ubuntu_keys")
     script=(/usr/share/debootstrap/scripts/gutsy) # that of all Ubuntus; Debian 12 has no name of noble
   fi
   [[ -n $mirror ]] || die "apt-get indextargets names no mirror of $debian_release; for Ubuntu set \
