@@ -2,6 +2,7 @@
 // closed form.
 #include <gtest/gtest.h>
 
+#include "common/film/aov.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "scene/deforming_triangles.h"
@@ -26,6 +27,30 @@ TEST(DeformingMeshes, OfManySetsAreTheirIntegralOverTime) {
   expect_band(image_of_motion(scene, options, "brute"), expected);
   scene.instances.clear(), mesh.group = 0;
   expect_band(image_of_motion(scene, options), expected);
+}
+
+// On a square that stands, whose normals turn to the right, and then up.
+TEST(DeformingMeshes, TurnTheirNormals) {
+  SceneData scene = band_scene();
+  Mesh& mesh = scene.meshes[0];
+  const auto all = [](const Vec3& normal) { return std::vector<Vec3>(4, normal); };
+  const Vec3 normals[] = {{0, 0, 1}, {0.6f, 0, 0.8f}, {0, 0.6f, 0.8f}};
+  mesh.normals = all(normals[0]);
+  mesh.later_normals = {all(normals[1]), all(normals[2])};
+  mesh.later_positions = {mesh.positions, mesh.positions};
+  glm::dvec3 expected(0.0);
+  for (int i = 0; i < 2000; ++i) {
+    const double at = (i + 0.5) / 1000;
+    const glm::dvec3 from(normals[i / 1000]), to(normals[i / 1000 + 1]);
+    expected += glm::normalize(from + (at - i / 1000) * (to - from)) / 2000.0;
+  }
+  Options options = motion_options(16, 1, 4096);
+  options.aovs = aov_bit<aov::ShadingNormal>;
+  const Image image = image_of_motion(scene, options);
+  for (int channel = 0; channel < 3; ++channel)
+    EXPECT_NEAR(image.layers.at(0).values.at(static_cast<std::size_t>(3 * 3 + channel)),
+                expected[channel], 0.02)
+        << channel;
 }
 
 TEST(DeformingMeshes, AreHeldBetweenTheirSets) {

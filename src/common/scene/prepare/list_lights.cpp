@@ -181,6 +181,7 @@ class Lister {
   /// `instance`: its number, or MovingLight::none for what lies in the world.
   void add_group(std::uint32_t group, std::uint32_t instance, const Affine* to_world) {
     data_.first.push_back(static_cast<std::uint32_t>(data_.lights.size()));
+    if (!emissive_meshes_.contains(group)) return;
     std::vector<PlacementErrors> poses;  // at all keys, the first one first
     if (const MotionTracks& tracks = scene_.motion.tracks(); tracks.moves(instance)) {
       const MotionTrack& track = tracks.instances[instance];
@@ -193,7 +194,7 @@ class Lister {
     } else {
       poses.emplace_back(to_world);
     }
-    for (const EmissiveMesh& emissive : emissive_meshes_[group])
+    for (const EmissiveMesh& emissive : emissive_meshes_.at(group))
       add_placed(*emissive.mesh, emissive.first_triangle, instance, to_world, poses);
   }
 
