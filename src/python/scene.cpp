@@ -132,7 +132,7 @@ SceneObject::Keys SceneObject::get_keys(std::size_t parameter) {
   Keys keys;
   if (!p.get_keys) return keys;
   for (const TransformKey& key : p.get_keys(session_->scene()))
-    keys.emplace_back(double{key.time}, numbers_of_key(p, key.to_world));
+    keys.emplace_back(double{key.time}, numbers_of_key(p.shape, key.to_world));
   return keys;
 }
 
@@ -142,7 +142,7 @@ void SceneObject::set_keys(std::size_t parameter, const Keys& keys) {
   std::vector<TransformKey> own;
   for (const auto& [time, numbers] : keys)
     own.push_back({static_cast<float>(time),
-                   affine_of_key(p, numbers, fmt::format("{}: key {}", p.name, own.size()))});
+                   affine_of_key(p.shape, numbers, fmt::format("{}: key {}", p.name, own.size()))});
   const std::vector<TransformKey> old = p.get_keys(session_->scene());
   if (own == old) return;
   session_->change_scene(p.changes, [&](SceneData& scene) { p.set_keys(scene, own); });

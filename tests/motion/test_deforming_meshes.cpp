@@ -23,10 +23,7 @@ TEST(DeformingMeshes, OfManySetsAreTheirIntegralOverTime) {
     return (seen_part(x, 6) + seen_part(x, 3, 5, 8) + seen_part(x, 6, 5, 8)) / 3;
   };
   const Options options = motion_options(16, 1, 16384);
-  expect_band(image_of_motion(scene, options), expected);
-  expect_band(image_of_motion(scene, options, "brute"), expected);
-  scene.instances.clear(), mesh.group = 0;
-  expect_band(image_of_motion(scene, options), expected);
+  expect_band_everywhere(scene, options, expected);
 }
 
 // On a square that stands, whose normals turn to the right, and then up.

@@ -46,6 +46,15 @@ inline void expect_band(const Image& image, const std::function<double(int)>& ex
   for (int x = 0; x < 16; ++x) EXPECT_NEAR(image.pixel(x, 0)[0], expected(x), 0.012) << x;
 }
 
+/// By the tree and by brute force, with the band in an instance and in the world.
+inline void expect_band_everywhere(SceneData scene, const Options& options,
+                                   const std::function<double(int)>& expected) {
+  expect_band(image_of_motion(scene, options), expected);
+  expect_band(image_of_motion(scene, options, "brute"), expected);
+  scene.instances.clear(), scene.meshes[0].group = 0;
+  expect_band(image_of_motion(scene, options), expected);
+}
+
 /// Means over columns of 8 pixels of the image's halves, by renders of different seeds.
 inline std::vector<MeanEstimate> region_means(const std::function<Image(std::uint64_t)>& render,
                                               int count) {

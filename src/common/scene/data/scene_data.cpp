@@ -146,11 +146,10 @@ Bounds scene_bounds(const SceneData& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Bounds& group = groups[scene.instances[i].group];
     const auto place = [&](const Affine& to_world) { all.grow(transformed(group, to_world)); };
-    if (motion.moves(i)) {
-      sample_poses(motion.segments, motion.instances[i], place);
-    } else {
+    if (!motion.moves(i))
       place(scene.instances[i].to_world);
-    }
+    else
+      sample_poses(motion.segments, motion.instances[i], place);
   }
   std::vector<Bounds> spheres;
   for (const Sphere& s : scene.spheres) spheres.push_back(sphere_bounds(s));

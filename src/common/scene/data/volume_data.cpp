@@ -39,12 +39,10 @@ void check(const SceneData& scene, const VolumeData& v) {
 }
 
 void check_room(const SceneData& scene, const VolumeData& v) {
-  if (scene.grid_nodes.size() + v.nodes.size() > 0xffffffffu) {
+  if (scene.grid_nodes.size() + v.nodes.size() > 0xffffffffu)
     refuse(scene, v, "expected at most 128 GiB of all sparse grids");
-  }
-  if (scene.grid_values.size() + v.values.size() + v.colors.size() > 0xffffffffu) {
+  if (scene.grid_values.size() + v.values.size() + v.colors.size() > 0xffffffffu)
     refuse(scene, v, "expected at most 4,294,967,295 values in all grids");
-  }
 }
 
 template <class T>
@@ -137,9 +135,8 @@ std::uint32_t add_grid(SceneData& scene, VolumeData volume) {
     grid.first = static_cast<std::uint32_t>(scene.grid_values.size());
     grid.channels = volume.channels;
     grid.interpolates = volume.interpolates ? 1 : 0;
-    if (volume.is_sparse()) {
+    if (volume.is_sparse())
       grid.root = static_cast<std::uint32_t>(scene.grid_nodes.size()) + volume.root;
-    }
     append(scene.grid_values, std::move(volume.is_sparse() ? volume.colors : volume.values));
     append(scene.grid_nodes, std::move(volume.nodes));
   }

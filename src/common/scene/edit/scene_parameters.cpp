@@ -166,12 +166,12 @@ class Lister {
   /// `get(scene)`: where it is, or where its motion begins. `place(scene, map)` puts it there.
   /// `set_keys` has checked ones, or none.
   template <class Get, class Place, class GetKeys, class SetKeys>
-  void add_transform(const std::string& name, Get get, Place place, GetKeys get_keys,
-                     SetKeys set_keys) {
+  void add_place(const std::string& name, const std::vector<std::size_t>& shape, Get get,
+                 Place place, GetKeys get_keys, SetKeys set_keys) {
     add(
-        name, {4, 4}, [get](const SceneData& scene) { return matrix_of(get(scene)); },
+        name, shape, [=](const SceneData& scene) { return numbers_of_key(shape, get(scene)); },
         [=](SceneData& scene, Values v) {
-          place(scene, affine_of(v, name));
+          place(scene, affine_of_key(shape, v, name));
           set_keys(scene, {});
         });
     list_.back().get_keys = get_keys;
@@ -184,8 +184,8 @@ class Lister {
 
   void add_view() {
     const std::string name = "camera.to_world";
-    add_transform(
-        name, [](const SceneData& scene) { return view_of(scene.camera); },
+    add_place(
+        name, {4, 4}, [](const SceneData& scene) { return view_of(scene.camera); },
         [name](SceneData& scene, const Affine& map) {
           if (!(map.determinant() > 0.0f))
             throw Error(name + ": expected a matrix that does not mirror");
@@ -197,11 +197,19 @@ class Lister {
         });
   }
 
+  /// Of what has the number i; none: it stands.
+  template <class Moving>
+  static void set_keys_of(std::vector<Moving>& moving, std::uint32_t Moving::*number,
+                          std::uint32_t i, const std::vector<TransformKey>& keys) {
+    std::erase_if(moving, [&](const Moving& one) { return one.*number == i; });
+    if (!keys.empty()) moving.push_back({i, keys});
+  }
+
   void add_instances() {
     using Moving = MotionData::MovingInstance;
     for (std::uint32_t i = 0; i < scene_.instances.size(); ++i) {
-      add_transform(
-          fmt::format("instances.{}.to_world", i),
+      add_place(
+          fmt::format("instances.{}.to_world", i), {4, 4},
           [i](const SceneData& scene) { return scene.instances[i].to_world; },
           [i](SceneData& scene, const Affine& map) { scene.instances[i].to_world = map; },
           [i](const SceneData& scene) {
@@ -210,9 +218,7 @@ class Lister {
             return own == moving.end() ? std::vector<TransformKey>() : own->keys;
           },
           [i](SceneData& scene, const std::vector<TransformKey>& keys) {
-            std::vector<Moving>& moving = scene.motion.instances;
-            std::erase_if(moving, [i](const Moving& one) { return one.instance == i; });
-            if (!keys.empty()) moving.push_back({i, keys});
+            set_keys_of(scene.motion.instances, &Moving::instance, i, keys);
           });
     }
   }
@@ -250,34 +256,24 @@ class Lister {
 
   /// Between keys it moves straight on.
   void add_center(const std::string& name, std::uint32_t i) {
-    using Moving = MotionData::MovingSphere;
-    const auto set_keys = [i](SceneData& scene, const std::vector<TransformKey>& keys) {
-      std::vector<Moving>& moving = scene.motion.spheres;
-      std::erase_if(moving, [i](const Moving& one) { return one.sphere == i; });
-      if (!keys.empty()) moving.push_back({i, keys});
-    };
-    add(
-        name, {3}, [i](const SceneData& scene) { return list_of(scene.spheres[i].center); },
-        [i, set_keys](SceneData& scene, Values v) {
-          scene.spheres[i].center = vector_of(v);
-          set_keys(scene, {});
+    add_place(
+        name, {3}, [i](const SceneData& scene) { return translate(scene.spheres[i].center); },
+        [i](SceneData& scene, const Affine& map) {
+          scene.spheres[i].center = map.point(Vec3(0.0f));
+        },
+        [i](const SceneData& scene) {
+          std::vector<TransformKey> keys;
+          const auto& moving = scene.motion.spheres;
+          const auto own = std::ranges::find(moving, i, &MotionData::MovingSphere::sphere);
+          if (own == moving.end()) return keys;
+          const Vec3 center = own->own_center(scene.spheres[i].center);
+          for (const TransformKey& key : own->keys)
+            keys.push_back({key.time, translate(key.to_world.point(center))});
+          return keys;
+        },
+        [i](SceneData& scene, const std::vector<TransformKey>& keys) {
+          set_keys_of(scene.motion.spheres, &MotionData::MovingSphere::sphere, i, keys);
         });
-    list_.back().get_keys = [i](const SceneData& scene) {
-      std::vector<TransformKey> keys;
-      const std::vector<Moving>& moving = scene.motion.spheres;
-      const auto own = std::ranges::find(moving, i, &Moving::sphere);
-      if (own == moving.end()) return keys;
-      const Vec3 center = own->own_center(scene.spheres[i].center);
-      for (const TransformKey& key : own->keys)
-        keys.push_back({key.time, translate(key.to_world.point(center))});
-      return keys;
-    };
-    list_.back().set_keys = [name, i, set_keys](SceneData& scene,
-                                                const std::vector<TransformKey>& keys) {
-      check_keys(keys, name);
-      scene.spheres[i].center = keys.front().to_world.point(Vec3(0.0f));
-      set_keys(scene, keys);
-    };
   }
 
   void add_spheres() {
@@ -352,15 +348,15 @@ std::vector<float> matrix_of(const Affine& map) {
   return values;
 }
 
-Affine affine_of_key(const SceneParameter& parameter, Values v, const std::string& what) {
-  if (parameter.shape.size() > 1) return affine_of(v, what);
+Affine affine_of_key(std::span<const std::size_t> shape, Values v, const std::string& what) {
+  if (shape.size() > 1) return affine_of(v, what);
   if (v.size() != 3) throw Error(fmt::format("{}: {} numbers; expected 3", what, v.size()));
   check_finite(v, what);
   return translate(vector_of(v));
 }
 
-std::vector<float> numbers_of_key(const SceneParameter& parameter, const Affine& map) {
-  return parameter.shape.size() > 1 ? matrix_of(map) : list_of(map.point(Vec3(0.0f)));
+std::vector<float> numbers_of_key(std::span<const std::size_t> shape, const Affine& map) {
+  return shape.size() > 1 ? matrix_of(map) : list_of(map.point(Vec3(0.0f)));
 }
 
 SceneChanges changes_of(std::string_view parameter) {

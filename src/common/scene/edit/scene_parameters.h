@@ -56,10 +56,10 @@ struct SceneParameter {
 Affine affine_of(std::span<const float> matrix, const std::string& what);
 std::vector<float> matrix_of(const Affine& map);
 
-/// The same of a key, which has as many numbers as the parameter. Throws Error, with `what`.
-Affine affine_of_key(const SceneParameter& parameter, std::span<const float> key,
+/// The same of a key of a parameter of this shape: a matrix, or a place. Throws Error, with `what`.
+Affine affine_of_key(std::span<const std::size_t> shape, std::span<const float> key,
                      const std::string& what);
-std::vector<float> numbers_of_key(const SceneParameter& parameter, const Affine& map);
+std::vector<float> numbers_of_key(std::span<const std::size_t> shape, const Affine& map);
 
 /// The parameters of an unprepared scene: its camera, the parameters of its materials, the radiance
 /// of its lights, its instances' places, its meshes' vertices and normals, its spheres. Meshes have

@@ -71,11 +71,6 @@ class Lister {
       add_group(scene_.instances[i].group, i, &scene_.instances[i].to_world);
     add_group(0, MovingLight::none, nullptr);
     for (std::size_t i = 0; i < scene_.spheres.size(); ++i) add_sphere(i);
-    for (std::size_t i = 0; i < scene_.motion.spheres.size(); ++i) {
-      const std::uint32_t sphere = scene_.motion.spheres[i].sphere;
-      if (shines(scene_.sphere_material[sphere]))
-        ways_[data_.spheres[sphere]] = moving_sphere_bounds(scene_, i);
-    }
     for (const DeltaLight& light : scene_.delta_lights) {
       if (has_position(light.kind)) add_delta(light);
     }
@@ -96,9 +91,13 @@ class Lister {
   }
 
  private:
-  /// Lights that move: wherever they are while the shutter is open, and turned in any way. One of a
-  /// weight may begin as a point.
-  std::vector<std::optional<LightBounds>> bounds_of_lights() const {
+  /// Of lights that move, with all of their way and turned in any way. One may begin as a point.
+  std::vector<std::optional<LightBounds>> bounds_of_lights() {
+    for (std::size_t i = 0; i < scene_.motion.spheres.size(); ++i) {
+      const std::uint32_t sphere = scene_.motion.spheres[i].sphere;
+      if (shines(scene_.sphere_material[sphere]))
+        ways_[data_.spheres[sphere]] = moving_sphere_bounds(scene_, i);
+    }
     std::vector<std::optional<LightBounds>> result;
     for (const Light& light : data_.lights) {
       result.push_back(bounds_of(light));
@@ -207,18 +206,13 @@ class Lister {
                               lights_max));
     }
     const PlacementErrors first(to_world);
-    const MotionTracks& tracks = scene_.motion.tracks();
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
       const std::uint32_t id = first_triangle + static_cast<std::uint32_t>(i);
       Vec3 v[3];
-      Bounds own, world;  // of all sets
       LightError error;
       float area = 0.0f;  // of all sets of vertices, of which the first comes last
       for (std::size_t set = mesh.vertex_sets(); set-- > 0;) {
-        for (int k = 0; k < 3; ++k) {
-          v[k] = mesh.positions_of(set)[mesh.triangles[i].v[k]];
-          own.grow(v[k]), world.grow(to_world != nullptr ? to_world->point(v[k]) : v[k]);
-        }
+        for (int k = 0; k < 3; ++k) v[k] = mesh.positions_of(set)[mesh.triangles[i].v[k]];
         area += 0.5f * glm::length(glm::cross(first.edge(v, 1), first.edge(v, 2)));
         for (const PlacementErrors& pose : poses) error.grow(pose.of_triangle(v));
       }
@@ -240,12 +234,27 @@ class Lister {
       light.emission_texture = emission.texture;
       data_.lights.push_back(Light::of(light));
       if (!moves) continue;
-      ways_[static_cast<std::uint32_t>(data_.lights.size() - 1)] =
-          tracks.moves(instance) ? moving_bounds(own, tracks, tracks.instances[instance]) : world;
+      if (selection_ == LightSelection::tree)
+        ways_[static_cast<std::uint32_t>(data_.lights.size() - 1)] =
+            way_of(mesh, mesh.triangles[i], instance, to_world);
       data_.moving.resize(data_.lights.size());
       data_.moving.back() = {id, instance};
     }
     finish_emitter(data_.lights.size() - mesh.triangles.size());
+  }
+
+  /// The world's box of a triangle of a mesh, of all sets of vertices, that moves with an instance.
+  Bounds way_of(const Mesh& mesh, const TriangleIndices& triangle, std::uint32_t instance,
+                const Affine* to_world) const {
+    const MotionTracks& tracks = scene_.motion.tracks();
+    const bool moves = tracks.moves(instance);
+    Bounds box;
+    for (std::size_t set = 0; set < mesh.vertex_sets(); ++set)
+      for (const std::uint32_t k : triangle.v) {
+        const Vec3& own = mesh.positions_of(set)[k];
+        box.grow(moves || to_world == nullptr ? own : to_world->point(own));
+      }
+    return moves ? moving_bounds(box, tracks, tracks.instances[instance]) : box;
   }
 
   void add_sphere(std::size_t i) {
@@ -285,7 +294,7 @@ class Lister {
   float radius_;
   std::size_t emitter_count_ = 0;                                       ///< that give any light
   std::map<std::uint32_t, std::vector<EmissiveMesh>> emissive_meshes_;  ///< by group
-  std::map<std::uint32_t, Bounds> ways_;                                ///< of lights that move
+  std::map<std::uint32_t, Bounds> ways_;  ///< of lights that move, for a tree
   LightListData data_;
 };
 

@@ -52,9 +52,8 @@ void balance_media(SceneData& scene, const Balance& balance) {
   }
   for (const std::uint32_t begin : begins) {
     std::size_t end = scene.grid_values.size();
-    for (const VolumeGrid& grid : scene.grids) {
+    for (const VolumeGrid& grid : scene.grids)
       if (grid.first > begin) end = std::min<std::size_t>(end, grid.first);
-    }
     for (std::size_t first = begin; first < end; first += 3) {
       float* const values = &scene.grid_values[first];
       Color color(values[0], values[1], values[2]);
