@@ -3,7 +3,8 @@
 
 `instances:N:P` is a forest of which P percent of the N trees sway while the shutter is open: a ray that
 meets the box of one has to make its pose at the path's time and invert it. With 0 percent the kernels
-know no time. All trace binary trees of one builder. `ratio` is the megakernel's time divided by the
+know no time. All trace trees of one builder: binary ones, and wide ones where `wide` is in the name,
+which on CUDA persistent warps and the megakernel's blocks trace. `ratio` is the megakernel's time divided by the
 variant's, `ns_per_ray_*` a row's time divided by its rays and shadow rays, and `motion_cost` that divided
 by the same variant's where all stands still. First, images of all variants are compared: they must be
 equal bit for bit.
@@ -20,9 +21,12 @@ TREES, QUICK_TREES = ["1K", "10K", "100K"], ["20"]
 PARTS = ["median", "min", "max"]
 BASE = "megakernel"
 VARIANTS = {
-    BASE: "--mode megakernel",
-    "wavefront": "--mode wavefront --stages split",
-    "fused": "--mode wavefront --stages fused",
+    BASE: "--mode megakernel --accel bvh2",
+    "wavefront": "--mode wavefront --stages split --accel bvh2",
+    "fused": "--mode wavefront --stages fused --accel bvh2",
+    "megakernel, wide": "--mode megakernel --accel cwbvh",
+    "wavefront, wide": "--mode wavefront --stages split --accel cwbvh",
+    "fused, wide": "--mode wavefront --stages fused --accel cwbvh",
 }
 
 
@@ -37,7 +41,7 @@ def configurations(arguments, _device):
     return [Configuration(
         f"{trees} trees, {percent} %: {variant}",
         f"--scene instances:{trees}:{percent} --width {size} --height {size} --spp {spp} --max-depth 8 "
-        f"--accel bvh2 --builder sah {options}",
+        f"--builder sah {options}",
         {"panel": f"{trees} trees", "series": variant, "x": f"{percent} %: {variant}", "trees": trees,
          "percent": percent, "variant": variant, **{f"ns_per_ray_{part}": "" for part in PARTS},
          "motion_cost": "", **ratio_labels()},

@@ -12,7 +12,8 @@ MegakernelCuda::MegakernelCuda(const ExecutionPlan& plan, const SceneData& scene
   next_path_ = memory_.allocate<std::uint32_t>("counters", 1);
   if (plan_.megakernel == MegakernelKind::sort) {
     CudaLauncher& launcher = *this;
-    blocks_ = std::make_unique<BlockWavefronts>(launcher, memory_, traits_, plan_.path_bytes);
+    blocks_ = std::make_unique<BlockWavefronts>(
+        launcher, memory_, traits_, scene_.triangles.instance_count > 0, plan_.path_bytes);
   }
   make_optix();
 }

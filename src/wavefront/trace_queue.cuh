@@ -50,6 +50,10 @@ struct QueuedPaths {
     return rays.pool.path_lanes(lanes_of(rays), rays.slot(ray_index));
   }
 
+  __device__ std::uint32_t path_index(std::uint32_t slot) const {
+    return rays.pool.load_path_id(slot).index;
+  }
+
   /// For masks: the key of the ray, which it may end. `path_key` gives a path's key by its index.
   template <class PathKey>
   __device__ std::uint32_t key_of(const Scene& scene, std::uint32_t slot, PathKey&& path_key,
@@ -87,12 +91,16 @@ struct QueuedShadowRays {
     return rays.pool.shadow_lanes(lanes_of(rays), rays.slot(ray_index));
   }
 
+  __device__ std::uint32_t path_index(std::uint32_t slot) const {
+    std::uint32_t index;
+    rays.pool.load_shadow(slot, index);
+    return index;
+  }
+
   template <class PathKey>
   __device__ std::uint32_t key_of(const Scene& scene, std::uint32_t slot, PathKey&& path_key,
                                   RayRecord&) const {
-    std::uint32_t path_index;
-    rays.pool.load_shadow(slot, path_index);
-    return shadow_ray_key(scene, path_key(path_index), rays.pool.load_shadow_rays(slot));
+    return shadow_ray_key(scene, path_key(path_index(slot)), rays.pool.load_shadow_rays(slot));
   }
 };
 
@@ -147,6 +155,28 @@ struct MaskedRays : Rays {
 
  private:
   using MaskedTraits = Traits<Accel::cwbvh, Geometry::mixed, Lighting::sky, true>;
+};
+
+/// QueuedPaths or QueuedShadowRays of a scene that moves, without spheres and masks.
+template <class Rays>
+struct MovingRays : Rays {
+  using Query = TimedQuery<typename Rays::Query>;
+  Scene scene;
+  SampleBuffer names;  ///< gives a path's id by its index
+
+  __device__ std::uint32_t fetch(unsigned lane, ReservedRays& reserved, RayRecord& record,
+                                 int& count) const {
+    const std::uint32_t first = Rays::fetch(lane, reserved, record, count);
+    if (static_cast<int>(lane) < count) {
+      const PathId id = names.id_of(this->path_index(this->rays.slot(first + lane)));
+      record.t_min = shutter_time(scene.shutter_times, scene.mask_seed, id);
+    }
+    return first;
+  }
+
+  __device__ InstanceRecord placed(const InstanceRecord& instance, float time) const {
+    return placed_at(instance, *scene.motion, time);
+  }
 };
 
 }  // namespace pt

@@ -31,8 +31,9 @@ WavefrontCuda::WavefrontCuda(const ExecutionPlan& plan, const SceneData& scene, 
   if (plan_.finishes_in_blocks) {
     const std::uint64_t most = std::min<std::uint64_t>(batch_paths(), finish_paths_);
     CudaLauncher& launcher = *this;
-    blocks_ = std::make_unique<BlockWavefronts>(launcher, memory_, traits_, plan_.path_bytes,
-                                                static_cast<std::uint32_t>(most));
+    blocks_ = std::make_unique<BlockWavefronts>(launcher, memory_, traits_,
+                                                scene_.triangles.instance_count > 0,
+                                                plan_.path_bytes, static_cast<std::uint32_t>(most));
     finish_paths_ = std::min(finish_paths_, blocks_->capacity());
   }
   check_cuda(cudaMallocHost(reinterpret_cast<void**>(&host_counters_), sizeof *host_counters_),

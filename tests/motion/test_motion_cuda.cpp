@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "common/image/compare/compare.h"
+#include "common/scene/builtin/generated_scenes.h"
+#include "common/scene/load/files/volumes/volume_files.h"
 #include "cuda_test.h"
 #include "medium/moving_fog.h"
 #include "mode_cases.h"
@@ -66,6 +68,71 @@ TEST_F(CudaMotion, AllModesAreEqual) {
         expect_same(render_moving(scene, options), expected);
       }
     }
+  }
+}
+
+// Threads that walk a binary tree, and what knows wide trees: warps that persist, block-local
+// wavefronts, and threads of fused stages.
+TEST_F(CudaMotion, WideTreesGiveTheSame) {
+  for (std::size_t room : {1u, 2u, 3u}) {
+    const SceneData scene = moving_rooms()[room];
+    SCOPED_TRACE(scene.name);
+    for (const char* sampler : {"independent", "stratified"}) {
+      const Settings by{{"sampler", sampler}};
+      const auto render = [&](const char* mode, const Settings& kernel, const Settings& more = {}) {
+        const Options options = with(with(moving_options(mode, by), kernel), more);
+        SCOPED_TRACE(command_of(options));
+        return render_moving(scene, options);
+      };
+      const Rendered expected = render("megakernel", {{"kernel", "loop"}, {"accel", "bvh2"}});
+      const Settings wide{{"accel", "cwbvh"}, {"persistent", "on"}};
+      expect_same(render("megakernel", {{"kernel", "sort"}}), expected);
+      for (const char* finish : {"0", "300", "131072"})
+        for (const char* schedule : {"graph", "host"})
+          expect_same(render("wavefront", wide, {{"finish-paths", finish}, {"schedule", schedule}}),
+                      expected);
+      expect_same(render("wavefront", wide, {{"pool-size", "300"}}), expected);
+      expect_same(render("wavefront", wide, {{"stages", "fused"}}), expected);
+      expect_same(render("wavefront", {{"persistent", "off"}}), expected);
+    }
+  }
+}
+
+// The same scene at rest, whose kernels are others: a camera that goes nowhere.
+TEST_F(CudaMotion, OfACameraThatGoesNowhereIsTheImageAtRest) {
+  SceneData still = moving_rooms()[1];
+  still.motion.camera.clear();
+  SceneData moving = moving_rooms()[1];
+  moving.motion.camera[1].to_world = moving.motion.camera[0].to_world;
+  for (const char* mode : {"megakernel", "wavefront"}) {
+    const Options options = moving_options(mode);
+    SceneData scene = still;
+    const DeviceInfo device = choose_device(options.device);
+    prepare_scene_for(scene, options, device);
+    EXPECT_FALSE(scene.traits.has_motion);
+    const Rendered expected = take_image(*make_renderer(options, scene, device));
+    const ImageDifference difference =
+        compare_images(render_moving(moving, options).image, expected.image, 1e-3);
+    EXPECT_LE(static_cast<double>(difference.pixels_past_tolerance), 0.02 * 61 * 40) << mode;
+  }
+}
+
+TEST_F(CudaMotion, KnowsSparseGrids) {
+  if (!reads_nanovdb()) GTEST_SKIP() << "built without NanoVDB";
+  const auto cloud = [](VolumeStorage storage) {
+    SceneData scene = make_cloud_scene({64, 10, 0.9f, true}, storage);
+    scene.motion.camera = {{0.0f, {}}, {1.0f, translate({0.3f, 0, 0})}};
+    return scene;
+  };
+  for (const char* mode : {"megakernel", "wavefront"}) {
+    const Options options = moving_options(mode);
+    const Rendered sparse = render_moving(cloud(VolumeStorage::sparse), options);
+    expect_plausible(sparse, options);
+    expect_same(render_moving(cloud(VolumeStorage::dense), options), sparse);
+    const Rendered cpu =
+        render_moving(cloud(VolumeStorage::sparse), with(options, {{"device", "cpu"}}));
+    const ImageDifference difference = compare_images(sparse.image, cpu.image, 1e-3);
+    EXPECT_LE(static_cast<double>(difference.pixels_past_tolerance), 0.05 * 61 * 40) << mode;
   }
 }
 

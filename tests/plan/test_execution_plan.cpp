@@ -361,26 +361,46 @@ const std::vector<Row>& rows() {
        {},
        moving_mesh(),
        gpu(),
-       {{"accel", "bvh2"},
-        {"persistent", "off"},
+       {{"accel", "cwbvh"},
+        {"persistent", "on"},
         {"stages", "split"},
         {"schedule", "graph"},
-        {"finish-paths", "32768"}}},
+        {"finish-paths", "1048576"}}},
+      {"motion where threads trace a ray each",
+       {{"persistent", "off"}},
+       moving_mesh(),
+       gpu(),
+       {{"accel", "bvh2"}, {"persistent", "off"}, {"finish-paths", "32768"}}},
       {"motion in fused stages that the host launches",
        {{"stages", "fused"}, {"schedule", "host"}},
        moving_mesh(),
        gpu(),
-       {{"accel", "bvh2"}, {"stages", "fused"}, {"schedule", "host"}}},
+       {{"accel", "cwbvh"}, {"stages", "fused"}, {"schedule", "host"}}},
       {"motion in a megakernel",
        mega(),
        moving_mesh(),
        gpu(),
+       {{"kernel", "sort"}, {"accel", "cwbvh"}}},
+      {"motion in blocks of another size",
+       mega({{"block", "32x2"}}),
+       moving_mesh(),
+       gpu(),
        {{"kernel", "loop"}, {"accel", "bvh2"}}},
+      {"motion of spheres",
+       {},
+       changed(moving_mesh(), [](auto& s) { s.spheres = 1; }),
+       gpu(),
+       {{"accel", "bvh2"}, {"persistent", "off"}}},
       {"motion of many kinds of BSDFs",
        {{"mode", "auto"}},
        changed(moving_mesh(), [](auto& s) { s.bsdf_kinds = five_kinds | bit(kind_of<Metal>); }),
        gpu(),
-       {{"mode", "wavefront"}, {"accel", "bvh2"}, {"order-surfaces", "on"}}},
+       {{"mode", "megakernel"}, {"kernel", "sort"}, {"accel", "cwbvh"}}},
+      {"motion of many kinds of BSDFs in waves",
+       {},
+       changed(moving_mesh(), [](auto& s) { s.bsdf_kinds = five_kinds | bit(kind_of<Metal>); }),
+       gpu(),
+       {{"mode", "wavefront"}, {"accel", "cwbvh"}, {"order-surfaces", "on"}}},
       {"motion on a CPU", {}, moving_mesh(), cpu(), {{"accel", "cwbvh"}}},
       {"motion of masks", {}, moving_masks(), cpu(), {{"accel", "bvh2"}}},
       {"motion of masks on CUDA", {}, moving_masks(), gpu(), {{"accel", "bvh2"}}},
@@ -394,6 +414,16 @@ const std::vector<Row>& rows() {
        {},
        changed(moving_mesh(), [](auto& s) { s.deforms = true; }),
        cpu(),
+       {{"accel", "bvh2"}}},
+      {"meshes that deform on CUDA",
+       mega(),
+       changed(moving_mesh(), [](auto& s) { s.deforms = true; }),
+       gpu(),
+       {{"kernel", "loop"}, {"accel", "bvh2"}}},
+      {"sparse grids and motion",
+       {},
+       changed(moving_masks(), [](auto& s) { s.has_media = s.has_sparse = true; }),
+       gpu(),
        {{"accel", "bvh2"}}},
       {"the host's waves", {{"schedule", "host"}}, mesh(), gpu(), {{"schedule", "host"}}},
       {"few emitters",
@@ -441,9 +471,9 @@ TEST(ExecutionPlan, RefusesWhatMotionOnCudaHasNoKernelsFor) {
   };
   const std::string begin = ": no kernel on CUDA renders scene 'x' (triangles, motion) so; ";
   const std::pair<Choices, std::string> refused[] = {
-      {mega({{"kernel", "sort"}}), "--kernel sort" + begin + "expected --kernel loop"},
-      {mega({{"kernel", "vote"}}), "--kernel vote" + begin + "expected --kernel loop"},
-      {{{"accel", "cwbvh"}}, "--accel cwbvh" + begin + "expected --accel bvh2"},
+      {mega({{"kernel", "vote"}}), "--kernel vote" + begin + "expected --kernel sort"},
+      {mega({{"accel", "cwbvh"}, {"kernel", "loop"}}),
+       "--accel cwbvh" + begin + "expected --accel bvh2"},
       {{{"accel", "brute"}}, "--accel brute" + begin + "expected --accel bvh2"},
       {{{"branching", "reduced"}},
        "--branching reduced" + begin + "expected --branching divergent"},
@@ -453,12 +483,10 @@ TEST(ExecutionPlan, RefusesWhatMotionOnCudaHasNoKernelsFor) {
   EXPECT_EQ(refusal({{"accel", "cwbvh"}}, moving_masks()),
             "--accel cwbvh: no kernel on CUDA renders scene 'x' (triangles, motion, masks, a far "
             "plane or hidden emitters) so; expected --accel bvh2");
-  const SceneProperties sparse =
-      changed(moving_masks(), [](auto& s) { s.has_media = s.has_sparse = true; });
-  EXPECT_EQ(refusal({}, sparse),
-            "scene 'x' moves while the shutter is open: on CUDA motion blur knows no sparse grids; "
-            "expected --volume dense or --device cpu");
-  EXPECT_NO_THROW(plan_of({}, sparse, cpu()));
+  const SceneProperties deforming = changed(moving_mesh(), [](auto& s) { s.deforms = true; });
+  EXPECT_EQ(refusal({{"accel", "cwbvh"}}, deforming),
+            "--accel cwbvh: no kernel on CUDA renders scene 'x' (triangles, motion, deforming "
+            "meshes) so; expected --accel bvh2");
   EXPECT_EQ(refusal({{"builder", "hploc"}}, moving_mesh()),
             "scene 'x' moves while the shutter is open: --builder hploc fits no tree to a motion; "
             "expected auto, sah, sah-reinsert, sbvh or best");

@@ -31,7 +31,8 @@ void for_each_need(EnumSet<Content> contents, Function&& function) {
               }
               for (const bool masks : {false, true}) {
                 for (const bool media : {false, true}) {
-                  need.scene = general_traits(Accel{accel}, contents, masks, media, false, true);
+                  need.scene = general_traits(Accel{accel}, contents, masks, media,
+                                              on_cuda && (masks || media), true);
                   function(need);
                   for (const bool sparse : {false, on_cuda && media}) {
                     need.scene = general_traits(Accel{accel}, contents, masks, media, sparse);

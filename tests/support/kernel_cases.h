@@ -22,14 +22,15 @@ inline SceneData scene_of(const KernelRow& row, Lighting light) {
   if (row.geometry == Geometry::spheres_and_quads)
     return built_in(light == Lighting::sky ? "spheres" : "cornell");
   if (row.extras == Extras::with_media) return filled_glasses();
-  if (row.extras == Extras::with_moving_media) {
-    SceneData scene = filled_glasses();
+  const auto sparse = [] { return make_cloud_scene({64, 10, 0.9f, true}, VolumeStorage::sparse); };
+  if (row.extras == Extras::with_sparse) return sparse();
+  if (row.extras >= Extras::with_moving_media) {
+    SceneData scene =
+        row.extras == Extras::with_moving_sparse && reads_nanovdb() ? sparse() : filled_glasses();
     scene.name += ", moving";
     scene.motion.camera = {{0.0f, {}}, {1.0f, translate({0.3f, 0, 0})}};
     return scene;
   }
-  if (row.extras == Extras::with_sparse)
-    return make_cloud_scene({64, 10, 0.9f, true}, VolumeStorage::sparse);
   const bool moves = row.extras == Extras::with_motion;
   const bool repeats = moves || (row.geometry == Geometry::mixed && row.extras == Extras::plain);
   SceneData scene = built_in(repeats ? "instances:20" : "boxes");

@@ -135,8 +135,7 @@ PT_HD void traverse_triangles_brute(const TriangleTree& tree, const Ray& ray, Qu
     const SlabTestRay world = make_slab_test_ray(ray);
     for (std::uint32_t i = 0; i < tree.instance_count; ++i) {
       const InstanceRecord& instance = tree.instances[i];
-      const InstanceVisit visit =
-          visit_instance(placed_for(query, instance), ray, world, query.t_min(), query.t_max());
+      const InstanceVisit visit = visit_instance_for(query, instance, ray, world);
       if (visit.is_empty) continue;
       lanes_of(ray).count(LanePoint::primitive);
       const TriangleRay local = make_triangle_ray(visit.ray.origin, visit.ray.direction);

@@ -164,8 +164,7 @@ PT_HD void traverse_triangles_bvh2(const TriangleTree& tree, const Ray& ray, Que
       if (leaf_count(current) > 1) {
         stack[depth++] = make_leaf(instance + 1, leaf_count(current) - 1);
       }
-      visit = visit_instance(placed_for(query, tree.instances[instance]), ray, local.slabs,
-                             query.t_min(), query.t_max());
+      visit = visit_instance_for(query, tree.instances[instance], ray, local.slabs);
       if (!visit.is_empty) {
         entered = depth;
         local = make_bvh2_ray(visit.ray);

@@ -183,8 +183,7 @@ PT_HD void traverse_cwbvh_by(const TriangleTree& tree, const Ray& ray, Query& qu
     while (leaves.has_slots()) {
       const CwbvhLeaf leaf = take_leaf(leaves);
       if (instanced && entered == in_world) {
-        visit = visit_instance(placed_for(query, tree.instances[leaf.first]), ray,
-                               make_slab_test_ray(ray), query.t_min(), query.t_max());
+        visit = visit_instance_for(query, tree.instances[leaf.first], ray, make_slab_test_ray(ray));
         if (visit.is_empty) continue;
         if (leaves.has_slots()) stack[depth++] = leaves;
         if (nodes.has_slots()) stack[depth++] = nodes;

@@ -150,17 +150,21 @@ class MaskedQuery : public Query {
   Mask mask_;
 };
 
+/// The inverse of an instance's pose at `time`.
+PT_HD_OF_FEW Affine to_object_at(const Motion& motion, std::uint32_t instance, float time) {
+  return inverse(motion.to_world(instance, time));
+}
+
 /// A placed group of triangles as it lies at `time`. Its bounds are those of the whole motion.
 PT_HD InstanceRecord placed_at(InstanceRecord instance, const Motion& motion, float time) {
   if (motion.instances[instance.index].moves())
-    instance.to_object = inverse(motion.to_world(instance.index, time));
+    instance.to_object = to_object_at(motion, instance.index, time);
   return instance;
 }
 
-/// The triangle of a slot, its vertices where they are at `time`.
-PT_HD Triangle triangle_at(const TriangleTree& tree, std::uint32_t slot, const Motion& motion,
-                           float time) {
-  if (motion.vertex_steps == 0) return load_wide(&tree.triangles[slot]);
+/// Of meshes that deform.
+PT_HD_OF_FEW Triangle deformed_triangle(const TriangleTree& tree, std::uint32_t slot,
+                                        const Motion& motion, float time) {
   const VertexTime at = vertex_time(time, motion.vertex_steps);
   Triangle triangle = motion.triangles.of(tree.triangles, at.set, slot);
   const Triangle end = motion.triangles.of(tree.triangles, at.set + 1, slot);
@@ -168,6 +172,28 @@ PT_HD Triangle triangle_at(const TriangleTree& tree, std::uint32_t slot, const M
   triangle.v1 = interpolate(triangle.v1, end.v1, at.part);
   triangle.v2 = interpolate(triangle.v2, end.v2, at.part);
   return triangle;
+}
+
+/// Its boxes hold what they do at both sets of vertices around the time, and so all between.
+PT_HD_OF_FEW Bvh2Node deformed_node(const TriangleTree& tree, std::uint32_t index,
+                                    const Motion& motion, float time) {
+  const VertexTime at = vertex_time(time, motion.vertex_steps);
+  Bvh2Node node = motion.nodes.of(tree.bvh2, at.set, index);
+  const Bvh2Node end = motion.nodes.of(tree.bvh2, at.set + 1, index);
+  const auto between = [&](const Vec4& a, const Vec4& b) {
+    return Vec4(interpolate(a.x, b.x, at.part), interpolate(a.y, b.y, at.part),
+                interpolate(a.z, b.z, at.part), interpolate(a.w, b.w, at.part));
+  };
+  for (int i = 0; i < 2; ++i) node.xy[i] = between(node.xy[i], end.xy[i]);
+  node.z = between(node.z, end.z);
+  return node;
+}
+
+/// The triangle of a slot, its vertices where they are at `time`.
+PT_HD Triangle triangle_at(const TriangleTree& tree, std::uint32_t slot, const Motion& motion,
+                           float time) {
+  if (motion.vertex_steps == 0) return load_wide(&tree.triangles[slot]);
+  return deformed_triangle(tree, slot, motion, time);
 }
 
 /// A query about what lies where at `time`.
@@ -185,19 +211,9 @@ class MovingQuery : public Query {
   PT_HD Triangle triangle(const TriangleTree& tree, std::uint32_t slot) const {
     return triangle_at(tree, slot, motion_, time_);
   }
-  /// Its boxes hold what they do at both sets of vertices around the time, and so all between.
   PT_HD Bvh2Node node(const TriangleTree& tree, std::uint32_t index) const {
     if (index >= motion_.nodes.count) return load_wide(&tree.bvh2[index]);
-    const VertexTime at = vertex_time(time_, motion_.vertex_steps);
-    Bvh2Node node = motion_.nodes.of(tree.bvh2, at.set, index);
-    const Bvh2Node end = motion_.nodes.of(tree.bvh2, at.set + 1, index);
-    const auto between = [&](const Vec4& a, const Vec4& b) {
-      return Vec4(interpolate(a.x, b.x, at.part), interpolate(a.y, b.y, at.part),
-                  interpolate(a.z, b.z, at.part), interpolate(a.w, b.w, at.part));
-    };
-    for (int i = 0; i < 2; ++i) node.xy[i] = between(node.xy[i], end.xy[i]);
-    node.z = between(node.z, end.z);
-    return node;
+    return deformed_node(tree, index, motion_, time_);
   }
 
  private:
@@ -210,16 +226,7 @@ inline constexpr bool is_moving_query = requires {
   Query::moves;
 };
 
-/// The instance as a query sees it.
-template <class Query>
-PT_HD decltype(auto) placed_for(const Query& query, const InstanceRecord& instance) {
-  if constexpr (is_moving_query<Query>) {
-    return query.placed(instance);
-  } else {
-    return (instance);
-  }
-}
-
+/// What a query sees of a slot, and of a node.
 template <class Query>
 PT_HD Triangle triangle_for(const Query& query, const TriangleTree& tree, std::uint32_t slot) {
   if constexpr (is_moving_query<Query>) return query.triangle(tree, slot);
@@ -261,15 +268,46 @@ PT_HD Ray object_ray(const InstanceRecord& instance, const Ray& ray) {
   return {instance.to_object.point(ray.origin), instance.to_object.vector(ray.direction)};
 }
 
-/// `world` is `ray`, prepared.
+/// Where the ray is in an instance's box; `world` is the ray, prepared.
+PT_HD SlabInterval part_in_box(const InstanceRecord& instance, const SlabTestRay& world) {
+  return intersect_slabs(world, instance.bounds.min, instance.bounds.max, -HUGE_VALF, HUGE_VALF);
+}
+
+PT_HD bool may_have_hit(const SlabInterval& part, float t_min, float t_max) {
+  return part.is_hit() && part.near <= t_max && part.far > t_min;
+}
+
 PT_HD InstanceVisit visit_instance(const InstanceRecord& instance, const Ray& ray,
                                    const SlabTestRay& world, float t_min, float t_max) {
-  const SlabInterval part =
-      intersect_slabs(world, instance.bounds.min, instance.bounds.max, -HUGE_VALF, HUGE_VALF);
+  const SlabInterval part = part_in_box(instance, world);
   InstanceVisit visit{object_ray(instance, ray), part, false};
-  visit.is_empty =
-      !(part.is_hit() && part.near <= t_max && part.far > t_min) || !is_traceable(visit.ray);
+  visit.is_empty = !may_have_hit(part, t_min, t_max) || !is_traceable(visit.ray);
   return visit;
+}
+
+/// The same of an instance that may move: `place` finds where it lies, if the ray meets its box.
+template <class Place>
+PT_HD InstanceVisit visit_instance(const InstanceRecord& instance, const Ray& ray,
+                                   const SlabTestRay& world, float t_min, float t_max,
+                                   Place&& place) {
+  const SlabInterval part = part_in_box(instance, world);
+  InstanceVisit visit{ray, part, !may_have_hit(part, t_min, t_max)};
+  if (visit.is_empty) return visit;
+  visit.ray = object_ray(place(instance), ray);
+  visit.is_empty = !is_traceable(visit.ray);
+  return visit;
+}
+
+/// The same as a query sees it.
+template <class Query>
+PT_HD InstanceVisit visit_instance_for(const Query& query, const InstanceRecord& instance,
+                                       const Ray& ray, const SlabTestRay& world) {
+  if constexpr (is_moving_query<Query>) {
+    return visit_instance(instance, ray, world, query.t_min(), query.t_max(),
+                          [&](const InstanceRecord& record) { return query.placed(record); });
+  } else {
+    return visit_instance(instance, ray, world, query.t_min(), query.t_max());
+  }
 }
 
 /// Offers the triangles of `count` slots to the query; true: the traversal ends.

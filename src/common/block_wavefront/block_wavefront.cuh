@@ -36,10 +36,12 @@ struct BlockWavefrontTuning {
   static constexpr int suspended_max = 12;  ///< lanes of a warp that a phase may suspend
 };
 
-/// A lane of a block. Traits: of triangles, or of triangles and their instances without masks.
+/// A lane of a block. Traits: of triangles, or of triangles and their instances without masks,
+/// which may move.
 template <class Traits>
 using BlockWavefrontLane = std::conditional_t<
-    Traits::has_instances, InstancedLane<PathQuery>,
+    Traits::has_instances,
+    InstancedLane<std::conditional_t<Traits::has_motion, TimedQuery<PathQuery>, PathQuery>>,
     CwbvhLane<std::conditional_t<Traits::has_masks, MaskedPathQuery, PathQuery>, true>>;
 
 /// What a block shares, in shared memory: of `slots` as many as the block has.
@@ -127,6 +129,11 @@ struct BlockRays {
       if (!is_shadow(ray_id)) distance = ray_length(scene, ray.direction, ray_key);
       key = __uint_as_float(ray_key);
     }
+    if constexpr (Traits::has_motion && Traits::has_instances) {  // the time, instead of t_min
+      PathState path;
+      set_time<Traits>(scene, samples.id_of(slot.load_path_index()), path);
+      key = path.time;
+    }
     return {ray.origin, key, ray.direction, distance};
   }
 
@@ -149,6 +156,8 @@ struct BlockRays {
   __device__ static Query with_key(const PathQuery& query, [[maybe_unused]] float key) {
     if constexpr (Traits::has_masks) {
       return {query, __float_as_uint(key)};
+    } else if constexpr (Traits::has_motion && Traits::has_instances) {
+      return {query, key};
     } else {
       return query;
     }
@@ -157,6 +166,10 @@ struct BlockRays {
   __device__ bool hides(const Query& query, std::uint32_t slot, const TriangleHit& hit) const {
     return mask_hides(MaskView(scene), scene.triangles.triangles, query.key(), slot, hit.b1,
                       hit.b2);
+  }
+
+  __device__ InstanceRecord placed(const InstanceRecord& instance, float time) const {
+    return placed_at(instance, *scene.motion, time);
   }
 
   __device__ void finish(std::uint32_t ray_id, const Query& query) const {
@@ -354,7 +367,8 @@ class BlockWavefront {
     typename Source::Stream random = source_.open(id);
     PathState path;
     path.index = path_index;
-    slot.store_path(path, begin_path(scene_, id, random));
+    set_time<Traits>(scene_, id, path);
+    slot.store_path(path, begin_path<Traits::has_motion>(scene_, id, random, path.time));
     slot.store_radiance(Color(0.0f), path);
   }
 
@@ -386,7 +400,7 @@ class BlockWavefront {
     if (suspended) {
       warp_.rays.store(lane_index, rays_.record(ray_id), ray_id);
       const auto ray = warp_.rays.load(lane_index);
-      lane.resume(ray, rays_.query(ray), suspended_state());
+      lane.resume(ray, rays_.query(ray), suspended_state(), rays_);
       if constexpr (counts_lanes) set_lanes(lane, rays_.lanes(ray_id));
     }
     __syncwarp();
@@ -468,6 +482,7 @@ class BlockWavefront {
     Color radiance;
     Ray ray;
     PathState path = slot.load_path(radiance, ray);
+    if constexpr (Traits::has_motion) set_time<Traits>(scene_, samples_.id_of(path.index), path);
     const bool is_lit = shadow == Shadow::free;
     if (is_lit) radiance += light_that_arrives(slot, path);
     shadow = Shadow::none;

@@ -3,9 +3,12 @@
 namespace pt {
 namespace {
 
-/// Scenes with masks or media are `mixed`, too; here they have no instances.
-BlockWavefrontCode code_for(const SceneTraits& traits, int path_bytes) {
+/// Scenes with masks or media are `mixed`, too; here they have no instances. So are those that
+/// move.
+BlockWavefrontCode code_for(const SceneTraits& traits, bool has_instances, int path_bytes) {
   if (path_bytes > 0) return code_that_carries();
+  if (traits.has_motion)
+    return has_instances ? code_for_moving_instances() : code_for_moving_cameras();
   if (traits.has_media) return code_for_media();
   if (traits.has_masks) return code_for_masks();
   return traits.geometry == Geometry::mixed ? code_for_instances() : code_for_triangles();
@@ -14,8 +17,9 @@ BlockWavefrontCode code_for(const SceneTraits& traits, int path_bytes) {
 }  // namespace
 
 BlockWavefronts::BlockWavefronts(CudaLauncher& launcher, CudaMemory& memory,
-                                 const SceneTraits& traits, int path_bytes, std::uint32_t paths_max)
-    : launcher_(launcher), code_(code_for(traits, path_bytes)) {
+                                 const SceneTraits& traits, bool has_instances, int path_bytes,
+                                 std::uint32_t paths_max)
+    : launcher_(launcher), code_(code_for(traits, has_instances, path_bytes)) {
   const std::size_t room = launcher_.properties_.sharedMemPerBlockOptin;
   while (slots_per_thread_ > block_wavefront_slots_least && code_.bytes(slots_per_thread_) > room)
     --slots_per_thread_;

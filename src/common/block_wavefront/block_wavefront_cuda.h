@@ -27,16 +27,18 @@ BlockWavefrontCode code_for_triangles();
 BlockWavefrontCode code_for_masks();
 BlockWavefrontCode code_for_media();
 BlockWavefrontCode code_for_instances();
+BlockWavefrontCode code_for_moving_instances();
+BlockWavefrontCode code_for_moving_cameras();
 /// For triangles whose paths carry extra records, if the build has it (plan/kernels.h).
 BlockWavefrontCode code_that_carries();
 
 /// For scenes of triangles in a wide tree, without boundaries that have no BSDF; or of instances of
-/// triangles as well, without masks and media.
+/// triangles as well, without masks and media, which may move, as may the camera.
 class BlockWavefronts {
  public:
   /// Takes memory for as many paths as blocks have room for, or for `paths_max` of them.
   BlockWavefronts(CudaLauncher& launcher, CudaMemory& memory, const SceneTraits& traits,
-                  int path_bytes, std::uint32_t paths_max = ~0u);
+                  bool has_instances, int path_bytes, std::uint32_t paths_max = ~0u);
 
   /// Paths that place() has room for.
   std::uint32_t capacity() const { return blocks_ * slots_.per_block; }

@@ -8,8 +8,10 @@
 
 namespace pt {
 
-template <Geometry geometry, bool has_masks = false, bool has_media = false>
-using BlockWavefrontTraits = Traits<Accel::cwbvh, geometry, Lighting::full, has_masks, has_media>;
+template <Geometry geometry, bool has_masks = false, bool has_media = false,
+          bool has_motion = false>
+using BlockWavefrontTraits =
+    Traits<Accel::cwbvh, geometry, Lighting::full, has_masks, has_media, false, has_motion>;
 
 template <class Traits>
 using BlockMemory = BlockWavefrontMemory<BlockWavefrontLane<Traits>, block_wavefront_threads>;
@@ -34,9 +36,10 @@ __global__ void __launch_bounds__(block_wavefront_threads, 1)
 }
 
 /// See BlockWavefrontCode.
-template <Geometry geometry, bool has_masks = false, bool has_media = false, bool carries = false>
+template <Geometry geometry, bool has_masks = false, bool has_media = false, bool carries = false,
+          bool has_motion = false>
 BlockWavefrontCode block_wavefront_code() {
-  using Traits = BlockWavefrontTraits<geometry, has_masks, has_media>;
+  using Traits = BlockWavefrontTraits<geometry, has_masks, has_media, has_motion>;
   using Memory = BlockMemory<Traits>;
   static_assert(Memory::bytes(block_wavefront_slots_least) <= sorting_bytes_min);
   static_assert(block_wavefront_slots_most == BlockWavefrontTuning::slots_most);

@@ -178,7 +178,7 @@ class Planner {
     if (traces_by_optix()) return {loop, "in OptiX's ray generation program"};
     if (is_specialized()) return {loop, "spheres and quads alone: the paper's loop"};
     if (scene_.spheres > 0) return {loop, "the others trace triangles alone"};
-    if (scene_.has_motion) return {loop, "the others know no motion blur"};
+    if (!knows_motion_in_wide_trees()) return {loop, motion_alone};
     if (!scene_.has_plain_instances()) return {loop, "the others know no masks among instances"};
     if (has_open_media()) return {loop, "the others know no boundaries without a BSDF"};
     if (o_.work != Work::persistent) return {loop, "--work " + to_string(o_.work)};
@@ -188,8 +188,8 @@ class Planner {
       return {sort, "triangles: a wavefront in each block was the fastest"};
     if (scene_.instances > 0) return {loop, "phase voting knows no instances"};
     const std::int64_t threads = o_.block.threads();
-    const bool may_vote = !scene_.has_masks && !scene_.has_media && threads % 32 == 0 &&
-                          threads <= phase_voting_threads_max &&
+    const bool may_vote = !scene_.has_masks && !scene_.has_media && !scene_.has_motion &&
+                          threads % 32 == 0 && threads <= phase_voting_threads_max &&
                           phase_voting_bytes(threads, o_.path_bytes) <= device_.block_shared_bytes;
     const bool is_simple = std::has_single_bit(scene_.bsdf_kinds) || known_structure();
     if (may_vote && is_simple) return {vote, "triangles of few kinds of BSDFs, blocks of warps"};
@@ -293,8 +293,7 @@ class Planner {
   std::pair<Accel, std::string> automatic_tree() const {
     const char* const alone = "rays are traced one by one, for which binary trees are faster";
     if (scene_.deforms) return {Accel::bvh2, "only binary trees know meshes that deform"};
-    if (scene_.has_motion && device_.is_cuda)
-      return {Accel::bvh2, "a GPU's kernels for motion blur know binary trees alone"};
+    if (device_.is_cuda && !knows_motion_in_wide_trees()) return {Accel::bvh2, motion_alone};
     if (has_open_media()) return {Accel::bvh2, alone};
     if (is_on_gpu(Mode::megakernel)) {
       if (plan_.megakernel == MegakernelKind::loop) return {Accel::bvh2, alone};
@@ -312,10 +311,19 @@ class Planner {
     return {Accel::bvh2, alone};
   }
 
+  static constexpr const char* motion_alone =
+      "where meshes deform, or masks or media move, rays are traced one by one";
+
+  /// Whether a GPU's kernels for wide trees know the scene's motion, if it has one.
+  bool knows_motion_in_wide_trees() const {
+    return !scene_.has_motion || (!scene_.deforms && !scene_.has_masked_kernels());
+  }
+
   /// Whether warps could trace the wavefront's queues in a wide tree. Where they do not, threads
   /// walk it over triangles alone.
   bool takes_wide_tree() const {
-    const bool is_plain = scene_.has_only_triangles() && !scene_.has_masks && !scene_.has_media;
+    const bool is_plain =
+        scene_.has_only_triangles() && !scene_.has_masks && !scene_.has_media && !scene_.has_motion;
     return warps_can_persist() && (o_.persistent || is_plain);
   }
 
@@ -337,7 +345,7 @@ class Planner {
   bool warps_can_persist() const {
     return is_on_gpu(Mode::wavefront) && !is_specialized() &&
            compaction_info(o_.compaction).appends && scene_.spheres == 0 && !has_open_media() &&
-           !scene_.has_motion && scene_.has_plain_instances();
+           knows_motion_in_wide_trees() && scene_.has_plain_instances();
   }
 
   void choose_scene_memory() {

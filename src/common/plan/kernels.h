@@ -71,9 +71,18 @@ constexpr EnumSet<ExtraRecords> if_built(EnumSet<ExtraRecords> records) {
 }
 
 /// What a kernel knows of a scene besides its geometry; the first four have all of those before,
-/// and the last motion, masks and media. A CPU's kernels with media know sparse grids, too.
-enum class Extras { plain, with_masks, with_media, with_sparse, with_motion, with_moving_media };
-inline constexpr int extras_count = 6;
+/// and so have the last three, which know masks with media. A CPU's kernels with media know sparse
+/// grids, too, and CUDA's where something moves.
+enum class Extras {
+  plain,
+  with_masks,
+  with_media,
+  with_sparse,
+  with_motion,
+  with_moving_media,
+  with_moving_sparse
+};
+inline constexpr int extras_count = 7;
 
 constexpr SceneTraits traits_of(Extras extras) {
   using enum Extras;
@@ -81,7 +90,7 @@ constexpr SceneTraits traits_of(Extras extras) {
   traits.has_motion = extras >= with_motion;
   traits.has_masks = extras >= with_masks && extras != with_motion;
   traits.has_media = extras >= with_media && extras != with_motion;
-  traits.has_sparse = extras == with_sparse;
+  traits.has_sparse = extras == with_sparse || extras == with_moving_sparse;
   return traits;
 }
 
@@ -145,11 +154,13 @@ inline constexpr KernelRow table[] = {
     {cuda, {loop, stages, fused}, bvh2, mixed, full, with_media, sampler},
     {cuda, {loop, stages, fused}, bvh2, mixed, full, with_sparse, sampler},
     {cuda, {loop, stages, fused}, bvh2, mixed, full, with_motion, sampler},
-    {cuda, {loop, stages, fused}, bvh2, mixed, full, with_moving_media, sampler},
+    {cuda, {loop, stages, fused}, bvh2, mixed, full, with_moving_sparse, sampler},
+    {cuda, fused, cwbvh, mixed, full, with_motion, sampler, deforming},
     {cuda, fused, trees, mixed, full, plain, sampler},
     {cuda, fused, trees, mixed, full, with_masks, sampler},
     {cuda, {vote, blocks, warps}, cwbvh, triangles, full, plain, sampler},
     {cuda, {blocks, warps}, cwbvh, mixed, full, plain, sampler, spheres},
+    {cuda, {blocks, warps}, cwbvh, mixed, full, with_motion, sampler, {spheres, deforming}},
     {cuda, {blocks, warps}, cwbvh, mixed, full, with_masks, sampler, {spheres, instances}},
     {cuda, {blocks, warps}, cwbvh, mixed, full, with_media, sampler, {spheres, instances, open_boundaries}},
     // Rays that OptiX traces.
@@ -197,14 +208,16 @@ constexpr bool has_kernel(const KernelNeed& need) {
   return false;
 }
 
-/// Whether stages trace rays, one by each thread, in such scenes; `scene` says nothing of the
-/// lights.
+/// Whether stages trace rays, one by each thread, in such scenes; `scene` says nothing of lights
+/// and sparse grids.
 constexpr bool traces_rays(SceneTraits scene, SceneMemory memory) {
   using enum NumberSource;
   for (const Lighting lighting : {Lighting::sky, Lighting::emitters, Lighting::full}) {
-    scene.lighting = lighting;
-    if (has_kernel({true, KernelBody::stages, scene, {philox, xorwow, sampler}, memory}))
-      return true;
+    for (const bool has_sparse : {false, true}) {
+      scene.lighting = lighting, scene.has_sparse = has_sparse;
+      if (has_kernel({true, KernelBody::stages, scene, {philox, xorwow, sampler}, memory}))
+        return true;
+    }
   }
   return false;
 }

@@ -110,7 +110,7 @@ std::string scene_text(const KernelNeed& need, const Options& o, const SceneProp
       {scene.deforms, "deforming meshes"},
       {scene.has_masks, "masks, a far plane or hidden emitters"},
       {scene.has_media, "media"},
-      {need.scene.has_sparse, "sparse grids"},
+      {need.on_cuda && scene.has_sparse, "sparse grids"},
       {scene.has_open_boundaries, "boundaries without a BSDF"},
       {o.branching == Branching::reduced, "--branching reduced"},
       {o.rng == RngKind::xorwow, "--rng xorwow"}};
@@ -213,8 +213,9 @@ KernelNeed need_of(const ExecutionPlan& plan, const Options& o, const ScenePrope
     need.sources = o.rng == RngKind::philox ? NumberSource::philox : NumberSource::xorwow;
     if (on_cuda) need.memory = plan.scene_memory;
   } else {
+    const bool has_sparse = scene.has_sparse || (scene.has_motion && scene.has_masked_kernels());
     need.scene = general_traits(plan.traversal, need.contents, scene.has_masks, scene.has_media,
-                                on_cuda && scene.has_sparse, scene.has_motion);
+                                on_cuda && has_sparse, scene.has_motion);
     need.sources = o.rng == RngKind::philox ? NumberSource::sampler : NumberSource::xorwow;
     if (o.scene_memory != SceneMemory::automatic) need.memory = o.scene_memory;
   }
@@ -266,8 +267,6 @@ std::string motion_obstacle(const Options& o, const SceneProperties& scene, bool
   if (scene.has_moving_grids)
     return "a grid of a medium does not move with the medium's boundary; expected a homogeneous "
            "medium, or a boundary that stands";
-  if (on_cuda && scene.has_sparse)
-    return "on CUDA motion blur knows no sparse grids; expected --volume dense or --device cpu";
   return "";
 }
 

@@ -94,7 +94,9 @@ class CwbvhLane {
     }
   }
   /// `ray` and `query` as for begin().
-  __device__ void resume(const PreparedRay& ray, const Query& query, const volatile uint2* state) {
+  template <class Work>
+  __device__ void resume(const PreparedRay& ray, const Query& query, const volatile uint2* state,
+                         const Work&) {
     set_ray(ray);
     const volatile uint2& met = state[suspended_size - 1];
     query_ = query.resumed(tree_, __uint_as_float(met.x), met.y);

@@ -10,6 +10,19 @@
 
 namespace pt {
 
+/// A query about what lies where at a time. Rays of paths begin at 0, so a ray's record has its
+/// time where others have t_min.
+template <class Query>
+class TimedQuery : public Query {
+ public:
+  __device__ TimedQuery(float time, float t_max) : Query(0.0f, t_max), time_(time) {}
+  __device__ TimedQuery(const Query& query, float time) : Query(query), time_(time) {}
+  __device__ float time() const { return time_; }
+
+ private:
+  float time_;
+};
+
 /// A lane's traversal of two levels; see CwbvhLane. What is left to visit are groups of one form:
 /// children in an instance, children in the world, instances. The instances of a node come before
 /// its inner children, the nearer ones first.
@@ -44,7 +57,7 @@ class InstancedLane {
   __device__ Query query() const {
     const std::uint32_t slot = memory_.slot[lane()];
     const bool has_hit = slot != no_primitive;
-    Query query(t_min(), has_hit ? infinite_distance : t_max_);
+    Query query(begin_or_time(), has_hit ? infinite_distance : t_max_);
     if (has_hit) query.offer(tree_, t_max_, slot, memory_.hit_instance[lane()]);
     return query;
   }
@@ -55,7 +68,7 @@ class InstancedLane {
     const Vec3 &o = ray.origin, &i = world.inverse, &d = ray.direction;
     memory_.origin[lane()] = {o.x, o.y, o.z, 0.0f};
     memory_.inverse[lane()] = {i.x, i.y, i.z, 0.0f};
-    memory_.direction[lane()] = {d.x, d.y, d.z, query.t_min()};
+    memory_.direction[lane()] = {d.x, d.y, d.z, begin_or_time_of(query)};
     memory_.slot[lane()] = no_primitive;
     origin_ = o, inverse_ = i;
     t_max_ = limit_ = query.t_max();
@@ -73,7 +86,9 @@ class InstancedLane {
     state[2].x = static_cast<std::uint32_t>(depth_);
     state[2].y = __float_as_uint(t_max_);
   }
-  __device__ void resume(const WorldRay&, const Query& query, const volatile uint2* state) {
+  template <class Work>
+  __device__ void resume(const WorldRay&, const Query& query, const volatile uint2* state,
+                         const Work& work) {
     nodes_ = {state[0].x, state[0].y};
     leaves_ = {state[1].x, state[1].y};
     depth_ = static_cast<int>(state[2].x);
@@ -81,7 +96,7 @@ class InstancedLane {
     set_kind(query);
     if ((nodes_.bits & in_world) != 0) return set_world();
     const InstanceRecord instance = load_wide(&tree_.instances[memory_.instance[lane()]]);
-    set_local(make_cwbvh_ray(object_ray(instance, world_ray())));
+    set_local(make_cwbvh_ray(object_ray(placed(work, instance), world_ray())));
     set_limit(memory_.inverse[lane()].w);
   }
 
@@ -108,12 +123,12 @@ class InstancedLane {
   }
 
   /// Goes to the root of the next instance, if the ray hits its box before the best hit.
-  __device__ void enter() {
+  template <class Work>
+  __device__ void enter(const Work& work) {
     const std::uint32_t instance_index = take_first();
     const InstanceRecord instance = load_wide(&tree_.instances[instance_index]);
     const Ray ray = world_ray();
-    const InstanceVisit visit =
-        visit_instance(instance, ray, make_slab_test_ray(ray), t_min(), t_max_);
+    const InstanceVisit visit = this->visit(work, instance, ray);
     if (visit.is_empty) {
       if (!nodes_.has_slots()) pop();
       return;
@@ -156,6 +171,8 @@ class InstancedLane {
   static constexpr std::uint32_t in_world = 1u << 11;   ///< children are in the tree over instances
   static constexpr std::uint32_t instances = 1u << 12;  ///< children are instances
   static constexpr std::uint32_t mark = 1u << 13;       ///< below it on the stack is the world
+
+  static constexpr bool has_time = requires(const Query& query) { query.time(); };
 
   __device__ static unsigned lane() { return threadIdx.x & 31; }
 
@@ -202,7 +219,36 @@ class InstancedLane {
     if constexpr (requires { query.is_shadow(); }) ends_with_hit_ = query.is_shadow();
   }
 
-  __device__ float t_min() const { return memory_.direction[lane()].w; }
+  __device__ float begin_or_time() const { return memory_.direction[lane()].w; }
+  __device__ static float begin_or_time_of(const Query& query) {
+    if constexpr (has_time) {
+      return query.time();
+    } else {
+      return query.t_min();
+    }
+  }
+  __device__ float t_min() const { return has_time ? 0.0f : begin_or_time(); }
+
+  template <class Work>
+  __device__ InstanceRecord placed([[maybe_unused]] const Work& work,
+                                   const InstanceRecord& instance) const {
+    if constexpr (has_time) {
+      return work.placed(instance, begin_or_time());
+    } else {
+      return instance;
+    }
+  }
+  template <class Work>
+  __device__ InstanceVisit visit([[maybe_unused]] const Work& work, const InstanceRecord& instance,
+                                 const Ray& ray) const {
+    const SlabTestRay world = make_slab_test_ray(ray);
+    if constexpr (has_time) {
+      const auto place = [&](const InstanceRecord& record) { return placed(work, record); };
+      return visit_instance(instance, ray, world, 0.0f, t_max_, place);
+    } else {
+      return visit_instance(instance, ray, world, t_min(), t_max_);
+    }
+  }
 
   /// Offers what was met at `t`, no farther than the best hit; of which memory has all but t.
   __device__ void take(float t, std::uint32_t slot, float far) {

@@ -84,6 +84,8 @@ struct PersistentTuning {
 ///   void finish(std::uint32_t id, const Query&)  by lanes whose ray is done
 ///   bool hides(const Query&, std::uint32_t slot, const TriangleHit&)  where Query::has_masks: the
 ///     triangle's mask lets the ray through
+///   InstanceRecord placed(const InstanceRecord&, float time)  where Query has a time: the instance
+///     as it lies then
 ///   std::uint32_t id_of(std::uint32_t index)  if a ray's id is not its index
 ///   Query query(const PreparedRay&)  if its rays have queries of several kinds
 ///   LaneCounter lanes(std::uint32_t id)  if its rays' lanes are to be counted
@@ -134,7 +136,7 @@ class PersistentTracer {
         } else if (phase == Phase::test) {
           if (tests) lane_.test_leaf(work_);
         } else if constexpr (Lane::has_instances) {
-          if (enters) lane_.enter();
+          if (enters) lane_.enter(work_);
         }
       }
     }

@@ -29,6 +29,7 @@ FeatureKernel feature_kernel(const SceneTraits& traits) {
                Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true, true>,
                Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true, true, true>,
                Traits<Accel::bvh2, Geometry::mixed, Lighting::full, false, false, false, true>,
+               Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, false, false, false, true>,
                Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true, true, false, true>>;
   FeatureKernel kernel = nullptr;
   dispatch_traits(Kinds{}, feature_traits(traits),
