@@ -196,7 +196,7 @@ class PhaseVotingTracer {
     if (works) continue_path(path, radiance, ray, hit);
     const PreparedRay prepared =
         traces_shadow() ? warp_.shadow_rays.load(lane_) : warp_.rays.load(lane_);
-    ray_.resume(prepared, query_of(prepared), suspended_);
+    ray_.resume(prepared, query_of(prepared), suspended_, work_);
     if (works && state_ != State::no_path) begin(prepared);
   }
 
