@@ -334,7 +334,7 @@ PLACES = [
           [against_mitsuba(depth) for depth in ("1.0", "10.0", "50.0")]),
     Place(TABLES, "a ray takes {:.2f} times as long as where all stand still by the megakernel and {:.2f} times by the "
           "wavefront; where all sway {:.2f} and {:.2f} times",
-          [by("log/2026-11-motion", "motion_cost", name=f"10K trees, {percent} %: {mode}")
+          [by("log/2026-11-motion", "motion_cost", name=f"10K trees, {percent} %: {mode}, wide")
            for percent in (1, 100) for mode in ("megakernel", "wavefront")]),
     Place(TABLES, "by OptiX takes {:.1f} to {:.1f} times as long as ours with `--optix-hits custom`, which gives equal "
           "images, and {:.1f} to {:.1f} times with `built-in`",

@@ -375,7 +375,7 @@ const std::vector<Row>& rows() {
        {{"stages", "fused"}, {"schedule", "host"}},
        moving_mesh(),
        gpu(),
-       {{"accel", "cwbvh"}, {"stages", "fused"}, {"schedule", "host"}}},
+       {{"accel", "bvh2"}, {"stages", "fused"}, {"schedule", "host"}}},
       {"motion in a megakernel",
        mega(),
        moving_mesh(),

@@ -122,7 +122,7 @@ TEST(PersistentLanes, HaveTheHitsOfTheCpuInInstancesThatMove) {
     EXPECT_EQ(hits[i].is_miss(), hit.is_miss()) << i;
     if (hit.is_miss() || hits[i].is_miss()) continue;
     ++found;
-    moving += motion.instances[tree.instances[hit.instance].index].moves() ? 1 : 0;
+    moving += tree.instances[hit.instance].track.moves() ? 1 : 0;
     EXPECT_EQ(hits[i].t, hit.t) << i;
     EXPECT_EQ(hits[i].instance, hit.instance) << i;
     EXPECT_EQ(tree.triangles[hits[i].primitive].id, tree.triangles[hit.primitive].id) << i;

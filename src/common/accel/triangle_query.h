@@ -150,21 +150,17 @@ class MaskedQuery : public Query {
   Mask mask_;
 };
 
-/// The inverse of an instance's pose at `time`.
-PT_HD_OF_FEW Affine to_object_at(const Motion& motion, std::uint32_t instance, float time) {
-  return inverse(motion.to_world(instance, time));
-}
-
-/// A placed group of triangles as it lies at `time`. Its bounds are those of the whole motion.
+/// A placed group of triangles as it lies at `time`.
 PT_HD InstanceRecord placed_at(InstanceRecord instance, const Motion& motion, float time) {
-  if (motion.instances[instance.index].moves())
-    instance.to_object = to_object_at(motion, instance.index, time);
+  if (instance.track.moves())
+    instance.to_object = inverse(pose_at(motion.segments, instance.track, time));
   return instance;
 }
 
-/// Of meshes that deform.
-PT_HD_OF_FEW Triangle deformed_triangle(const TriangleTree& tree, std::uint32_t slot,
-                                        const Motion& motion, float time) {
+/// The triangle of a slot, its vertices where they are at `time`.
+PT_HD Triangle triangle_at(const TriangleTree& tree, std::uint32_t slot, const Motion& motion,
+                           float time) {
+  if (motion.vertex_steps == 0) return load_wide(&tree.triangles[slot]);
   const VertexTime at = vertex_time(time, motion.vertex_steps);
   Triangle triangle = motion.triangles.of(tree.triangles, at.set, slot);
   const Triangle end = motion.triangles.of(tree.triangles, at.set + 1, slot);
@@ -172,28 +168,6 @@ PT_HD_OF_FEW Triangle deformed_triangle(const TriangleTree& tree, std::uint32_t 
   triangle.v1 = interpolate(triangle.v1, end.v1, at.part);
   triangle.v2 = interpolate(triangle.v2, end.v2, at.part);
   return triangle;
-}
-
-/// Its boxes hold what they do at both sets of vertices around the time, and so all between.
-PT_HD_OF_FEW Bvh2Node deformed_node(const TriangleTree& tree, std::uint32_t index,
-                                    const Motion& motion, float time) {
-  const VertexTime at = vertex_time(time, motion.vertex_steps);
-  Bvh2Node node = motion.nodes.of(tree.bvh2, at.set, index);
-  const Bvh2Node end = motion.nodes.of(tree.bvh2, at.set + 1, index);
-  const auto between = [&](const Vec4& a, const Vec4& b) {
-    return Vec4(interpolate(a.x, b.x, at.part), interpolate(a.y, b.y, at.part),
-                interpolate(a.z, b.z, at.part), interpolate(a.w, b.w, at.part));
-  };
-  for (int i = 0; i < 2; ++i) node.xy[i] = between(node.xy[i], end.xy[i]);
-  node.z = between(node.z, end.z);
-  return node;
-}
-
-/// The triangle of a slot, its vertices where they are at `time`.
-PT_HD Triangle triangle_at(const TriangleTree& tree, std::uint32_t slot, const Motion& motion,
-                           float time) {
-  if (motion.vertex_steps == 0) return load_wide(&tree.triangles[slot]);
-  return deformed_triangle(tree, slot, motion, time);
 }
 
 /// A query about what lies where at `time`.
@@ -211,9 +185,19 @@ class MovingQuery : public Query {
   PT_HD Triangle triangle(const TriangleTree& tree, std::uint32_t slot) const {
     return triangle_at(tree, slot, motion_, time_);
   }
+  /// Its boxes hold what they do at both sets of vertices around the time, and so all between.
   PT_HD Bvh2Node node(const TriangleTree& tree, std::uint32_t index) const {
     if (index >= motion_.nodes.count) return load_wide(&tree.bvh2[index]);
-    return deformed_node(tree, index, motion_, time_);
+    const VertexTime at = vertex_time(time_, motion_.vertex_steps);
+    Bvh2Node node = motion_.nodes.of(tree.bvh2, at.set, index);
+    const Bvh2Node end = motion_.nodes.of(tree.bvh2, at.set + 1, index);
+    const auto between = [&](const Vec4& a, const Vec4& b) {
+      return Vec4(interpolate(a.x, b.x, at.part), interpolate(a.y, b.y, at.part),
+                  interpolate(a.z, b.z, at.part), interpolate(a.w, b.w, at.part));
+    };
+    for (int i = 0; i < 2; ++i) node.xy[i] = between(node.xy[i], end.xy[i]);
+    node.z = between(node.z, end.z);
+    return node;
   }
 
  private:

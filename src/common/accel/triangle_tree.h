@@ -4,6 +4,7 @@
 
 #include "common/accel/nodes.h"
 #include "common/choices/accel.h"
+#include "common/geometry/motion.h"
 #include "common/geometry/triangle.h"
 #include "common/math/transform.h"
 
@@ -53,8 +54,8 @@ struct alignas(16) InstanceRecord {
   std::uint32_t root;  ///< the group's root among the nodes
   std::uint32_t index;
   std::uint32_t first_slot, slot_count;  ///< the group's triangles
-  Bounds bounds;                         ///< in the world; widened
-  std::uint32_t padding[2] = {};
+  Bounds bounds;                         ///< in the world, of the whole motion; widened
+  MotionTrack track;                     ///< none: it stands still
 };
 
 /// A view, passed to kernels by value. All groups share the arrays; child and slot indices are

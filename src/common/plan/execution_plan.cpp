@@ -320,11 +320,13 @@ class Planner {
   }
 
   /// Whether warps could trace the wavefront's queues in a wide tree. Where they do not, threads
-  /// walk it over triangles alone.
+  /// walk it over triangles alone: over instances a binary one is twice as fast
+  /// (results/log/2026-11-motion.md).
   bool takes_wide_tree() const {
     const bool is_plain =
         scene_.has_only_triangles() && !scene_.has_masks && !scene_.has_media && !scene_.has_motion;
-    return warps_can_persist() && (o_.persistent || is_plain);
+    const bool by_warps = o_.persistent && o_.stages != Stages::fused;
+    return warps_can_persist() && (by_warps || is_plain);
   }
 
   /// Media through which rays are traced one by one: a shadow ray goes on behind the first surface.

@@ -213,9 +213,8 @@ KernelNeed need_of(const ExecutionPlan& plan, const Options& o, const ScenePrope
     need.sources = o.rng == RngKind::philox ? NumberSource::philox : NumberSource::xorwow;
     if (on_cuda) need.memory = plan.scene_memory;
   } else {
-    const bool has_sparse = scene.has_sparse || (scene.has_motion && scene.has_masked_kernels());
     need.scene = general_traits(plan.traversal, need.contents, scene.has_masks, scene.has_media,
-                                on_cuda && has_sparse, scene.has_motion);
+                                on_cuda && looks_up_sparse_grids(scene), scene.has_motion);
     need.sources = o.rng == RngKind::philox ? NumberSource::sampler : NumberSource::xorwow;
     if (o.scene_memory != SceneMemory::automatic) need.memory = o.scene_memory;
   }

@@ -15,6 +15,12 @@ DeviceProperties limit_device(DeviceProperties device, const DeviceLimits& limit
 /// Before anything is chosen. Throws Error.
 void check_options_for_scene(const Options& options, const SceneProperties& scene);
 
+/// Whether CUDA's kernels of a scene look up sparse grids. The call takes registers, so kernels of
+/// dense grids do not where nothing moves.
+inline bool looks_up_sparse_grids(const SceneProperties& scene) {
+  return scene.has_sparse || (scene.has_motion && scene.has_masked_kernels());
+}
+
 /// Which kernel a plan asks for; `on_cuda`: the device renders it, not a thread of the host.
 KernelNeed need_of(const ExecutionPlan& plan, const Options& options, const SceneProperties& scene,
                    bool on_cuda);

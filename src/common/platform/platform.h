@@ -19,8 +19,6 @@
 // through local memory, which has cost up to 1.8 times the whole kernel.
 #define PT_HD_IN_KERNEL __host__ __device__ __forceinline__
 #define PT_HD_IN_LOOP PT_HD
-// Of what few threads need in a loop of all: a call, for registers spill where it is inlined.
-#define PT_HD_OF_FEW __host__ __device__ __noinline__ inline
 #define PT_UNROLL(n) PT_PRAGMA(unroll n)
 #else
 #include "common/platform/platform_cpu.h"
@@ -29,7 +27,6 @@
 #define PT_HD_IN_KERNEL inline
 // Of a loop that is short: GCC calls it where a file has much code, and rays take a quarter longer.
 #define PT_HD_IN_LOOP inline __attribute__((always_inline))
-#define PT_HD_OF_FEW inline
 #define PT_UNROLL(n) PT_PRAGMA(GCC unroll n)
 #endif
 

@@ -55,11 +55,12 @@ Bounds world_bounds(const Bounds& box, const Affine& to_object) {
 
 InstanceRecord make_record(const GroupTree& group, const Affine& to_object, std::size_t index,
                            const MotionTracks& motion) {
-  const Bounds bounds = motion.moves(index)
-                            ? moving_bounds(group.bounds, motion, motion.instances[index])
-                            : world_bounds(group.bounds, to_object);
-  return {to_object,        group.root,       static_cast<std::uint32_t>(index),
-          group.first_slot, group.slot_count, bounds};
+  const MotionTrack track = motion.moves(index) ? motion.instances[index] : MotionTrack();
+  const Bounds bounds = track.moves() ? moving_bounds(group.bounds, motion, track)
+                                      : world_bounds(group.bounds, to_object);
+  return {
+      to_object, group.root, static_cast<std::uint32_t>(index), group.first_slot, group.slot_count,
+      bounds,    track};
 }
 
 const GroupTree* find_group(std::span<const GroupTree> groups, std::uint32_t index) {

@@ -119,7 +119,7 @@ class InstancedLane {
       if (nodes_.has_slots()) push(nodes_);
       nodes_ = {leaves.base, bits};
     }
-    if (!nodes_.has_slots()) pop();
+    go_on();
   }
 
   /// Goes to the root of the next instance, if the ray hits its box before the best hit.
@@ -128,10 +128,19 @@ class InstancedLane {
     const std::uint32_t instance_index = take_first();
     const InstanceRecord instance = load_wide(&tree_.instances[instance_index]);
     const Ray ray = world_ray();
-    const InstanceVisit visit = this->visit(work, instance, ray);
-    if (visit.is_empty) {
-      if (!nodes_.has_slots()) pop();
-      return;
+    InstanceVisit visit;
+    if constexpr (has_time) {
+      visit.part = part_in_box(instance, make_slab_test_ray(ray));
+      if (!may_have_hit(visit.part, t_min(), t_max_)) return go_on();
+      // The ray is read again, and what steps need of it: they take no registers of the pose.
+      visit.ray = object_ray(placed(work, instance), world_ray());
+      if (!is_traceable(visit.ray)) {
+        set_world();
+        return go_on();
+      }
+    } else {
+      visit = visit_instance(instance, ray, make_slab_test_ray(ray), t_min(), t_max_);
+      if (visit.is_empty) return go_on();
     }
     if (nodes_.has_slots()) push(nodes_);
     if (depth_ > 0) push({0, mark | 1u});
@@ -182,6 +191,10 @@ class InstancedLane {
     if (depth_ == 0) return;
     const uint2 top = stack_[--depth_];
     nodes_ = {top.x, top.y};
+  }
+
+  __device__ void go_on() {
+    if (!nodes_.has_slots()) pop();
   }
 
   /// The index of the first child, which is taken out of the group.
@@ -238,18 +251,6 @@ class InstancedLane {
       return instance;
     }
   }
-  template <class Work>
-  __device__ InstanceVisit visit([[maybe_unused]] const Work& work, const InstanceRecord& instance,
-                                 const Ray& ray) const {
-    const SlabTestRay world = make_slab_test_ray(ray);
-    if constexpr (has_time) {
-      const auto place = [&](const InstanceRecord& record) { return placed(work, record); };
-      return visit_instance(instance, ray, world, 0.0f, t_max_, place);
-    } else {
-      return visit_instance(instance, ray, world, t_min(), t_max_);
-    }
-  }
-
   /// Offers what was met at `t`, no farther than the best hit; of which memory has all but t.
   __device__ void take(float t, std::uint32_t slot, float far) {
     if (t == t_max_ && !wins_tie(slot)) return;

@@ -12,6 +12,7 @@
 #include "common/error/host_memory.h"
 #include "common/film/develop.h"
 #include "common/options/option_names.h"
+#include "common/plan/plan_steps.h"
 #include "common/render/lane_histograms.h"
 #include "common/scene/data/scene_arrays.h"
 #include "common/scene/data/scene_facts.h"
@@ -22,10 +23,9 @@
 namespace pt {
 namespace {
 
-/// Kernels of dense grids alone keep the registers that a lookup in a sparse one takes.
 SceneTraits traits_on_cuda(const SceneData& scene) {
   SceneTraits traits = scene.traits;
-  traits.has_sparse = scene.properties.has_sparse;
+  traits.has_sparse = looks_up_sparse_grids(scene.properties);
   return traits;
 }
 

@@ -15,24 +15,28 @@ __global__ void find_features(const __grid_constant__ Scene scene,
   accumulate_features<Traits>(film, batch, scene, source, pixel);
 }
 
+/// A kernel for each kind of scene that the table of kernels has, as far as features tell them
+/// apart.
+struct FeatureKernels {
+  static constexpr bool has(const SceneTraits& kernel) {
+    for (const KernelRow& row : kernel_table) {
+      if (!row.on_cuda || !row.accels.contains(kernel.accel)) continue;
+      SceneTraits scene = traits_of(row.extras);
+      scene.accel = kernel.accel, scene.geometry = row.geometry;
+      for (const Lighting lighting : {Lighting::sky, Lighting::emitters, Lighting::full}) {
+        scene.lighting = lighting;
+        if (row.lighting.contains(lighting) && feature_traits(scene) == kernel) return true;
+      }
+    }
+    return false;
+  }
+};
+
 }  // namespace
 
 FeatureKernel feature_kernel(const SceneTraits& traits) {
-  using Kinds =
-      TypeList<Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::sky>,
-               Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::sky>,
-               Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
-               Traits<Accel::cwbvh, Geometry::mixed, Lighting::full>,
-               Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
-               Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>,
-               Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true, true>,
-               Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true, true>,
-               Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true, true, true>,
-               Traits<Accel::bvh2, Geometry::mixed, Lighting::full, false, false, false, true>,
-               Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, false, false, false, true>,
-               Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true, true, false, true>>;
   FeatureKernel kernel = nullptr;
-  dispatch_traits(Kinds{}, feature_traits(traits),
+  dispatch_traits(TraitsOf<FeatureKernels>{}, feature_traits(traits),
                   [&](auto kind) { kernel = find_features<decltype(kind)>; });
   return kernel;
 }
