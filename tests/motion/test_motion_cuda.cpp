@@ -49,7 +49,8 @@ std::vector<SceneData> moving_rooms() {
   masked.materials[masked.meshes[1].material].opacity = constant_opacity(0.6f);
   rooms.push_back(moving_spheres());
   rooms.push_back(glowing_room());
-  rooms.push_back(passing_lamps());  // in a light tree
+  SceneData& lamps = rooms.emplace_back(passing_lamps());  // in a light tree
+  lamps.sky.nadir = lamps.sky.zenith = Color(0.1f);
   return rooms;
 }
 
