@@ -193,6 +193,7 @@ class InstancedLane {
     nodes_ = {top.x, top.y};
   }
 
+  /// In what is left of the group, or in the one below.
   __device__ void go_on() {
     if (!nodes_.has_slots()) pop();
   }
@@ -251,6 +252,7 @@ class InstancedLane {
       return instance;
     }
   }
+
   /// Offers what was met at `t`, no farther than the best hit; of which memory has all but t.
   __device__ void take(float t, std::uint32_t slot, float far) {
     if (t == t_max_ && !wins_tie(slot)) return;
