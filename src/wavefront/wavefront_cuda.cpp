@@ -236,7 +236,8 @@ void WavefrontCuda::build_graph(const SampleBuffer& batch) {
   try {
     for (int i = 0; i < waves_per_iteration; ++i) enqueue_wave(batch, loop, buffers_.reuses_slots);
   } catch (...) {
-    cudaStreamEndCapture(stream(), &captured);  // else the graph could not be destroyed
+    cudaStreamEndCapture(stream(), &captured);
+    graph_ = nullptr;  // if the recording was broken, the driver crashes as it destroys the graph
     throw;
   }
   check_cuda(cudaStreamEndCapture(stream(), &captured), "cudaStreamEndCapture");

@@ -6,6 +6,7 @@
 #include <functional>
 #include <iostream>
 #include <optional>
+#include <thread>
 
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/device/cuda/create_world.h"
@@ -555,6 +556,31 @@ TEST_F(CudaBatches, AnInterruptionLeavesTheImageOfTheSamplesTaken) {
     EXPECT_EQ(progress.done, (std::vector<std::uint64_t>{std::uint64_t{512} * 512 *
                                                          static_cast<std::uint64_t>(samples)}));
     expect_same(stopped, render_options(with(varied, {{"spp", std::to_string(samples)}})));
+  }
+}
+
+// Each render records a graph of its waves while others are set up.
+TEST_F(CudaModes, ThreadsRenderOnOneGpu) {
+  const Options options = with(Options(), {{"scene", "cornell"},
+                                           {"width", "16"},
+                                           {"height", "8"},
+                                           {"spp", "1"},
+                                           {"mode", "wavefront"},
+                                           {"schedule", "graph"},
+                                           {"device", "cuda:0"}});
+  const Rendered expected = render_options(options);
+  constexpr int renders = 40;
+  std::vector<std::vector<Rendered>> found(3);
+  std::vector<std::thread> threads;
+  for (std::vector<Rendered>& own : found) {
+    threads.emplace_back([&] {
+      for (int i = 0; i < renders; ++i) own.push_back(render_options(options));
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const std::vector<Rendered>& own : found) {
+    ASSERT_EQ(own.size(), renders);
+    for (const Rendered& rendered : own) expect_same(rendered, expected);
   }
 }
 

@@ -241,7 +241,7 @@ class Real(TestCase):
             self.assertEqual(whole["rays"], mine[0]["counts"]["rays"])
             parts = {row["stage"] for row in table if row["mode"] == mode} - {"all"}
             self.assertEqual(parts, {stage["stage"] for stage in mine[0]["stages"]})
-        self.assertIn("shade_surface", {row["stage"] for row in table})
+        self.assertGreater(len(parts), 1)  # the wavefront's
 
     def test_a_file_and_a_name(self):
         comparison = ptexp.compare_modes("spheres", spheres=3, **SMALL, repeat=2, rounds=1)

@@ -22,8 +22,8 @@ class Params(TestCase):
         ("instances.0.to_world", matrix(-1.5, 0.4), {"cube": -1.5}),
         ("camera.origin", (-1.0, 1, 4), {"x": -1.0}),
     ]
-    STRUCTURES = [{}, {"accel": "bvh2", "builder": "sah"}, {"accel": "cwbvh", "builder": "sbvh"}, {"accel": "brute"},
-                  {"mode": "megakernel"}, {"mode": "serial"}]
+    STRUCTURES = [{}, {"accel": "bvh2", "builder": "sah"}, {"accel": "cwbvh", "builder": "sbvh"},
+                  {"accel": "brute", "device": "cpu"}, {"mode": "megakernel"}, {"mode": "serial"}]
 
     def changed(self, names_and_values, **file_values):
         """(the scene that was changed, the image of a file that has the values)"""

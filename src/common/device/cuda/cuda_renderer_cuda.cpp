@@ -185,8 +185,9 @@ void CudaRenderer::accumulate(const SampleBuffer& batch) {
 // of a few pixels loads all that the render will use.
 void CudaRenderer::load_kernels() {
   const WallTimer watch;
-  // Set-up filled memory on the default stream, for which stream_ does not wait.
-  check_cuda(cudaDeviceSynchronize(), "setting up");
+  // Set-up filled memory on the default stream, for which stream_ does not wait. (To wait for the
+  // device would break the graph that another thread records.)
+  check_cuda(cudaStreamSynchronize(nullptr), "setting up");
   Window window = image_window();
   Film empty;
   empty.window = window;
@@ -285,7 +286,7 @@ bool CudaRenderer::set_scene(const SceneData& scene, const SceneChanges& changes
                           values.size() * sizeof *pointer, cudaMemcpyHostToDevice),
                "uploading what has changed of the scene");
   });
-  check_cuda(cudaDeviceSynchronize(), "uploading what has changed of the scene");
+  check_cuda(cudaStreamSynchronize(nullptr), "uploading what has changed of the scene");
   scene_ = changed;
   forget_film();
   return true;
