@@ -79,7 +79,7 @@ PT_HD void start_path(const Scene& scene, const StageContext<Source>& context, s
   const PathId id = context.samples.id_of(path_index);
   auto random = context.source.open(id);
   float time = 0.0f;
-  if constexpr (has_motion) time = shutter_time(scene.shutter_times, scene.mask_seed, id);
+  if constexpr (has_motion) time = shutter_time(scene, id);
   const Ray ray = begin_path<has_motion>(scene, id, random, time);
   context.source.close(id, random);
   context.pool.store_new_path(slot, ray, path_index);

@@ -128,54 +128,62 @@ class QueryWithKey : public Query {
   float key_;
 };
 
-/// QueuedPaths or QueuedShadowRays of a scene without spheres and instances.
+/// QueuedPaths or QueuedShadowRays whose paths have names.
 template <class Rays>
-struct MaskedRays : Rays {
-  using Query = QueryWithKey<typename Rays::Query>;
+struct NamedRays : Rays {
   Scene scene;
   SampleBuffer names;  ///< gives a path's id by its index
 
-  __device__ std::uint32_t fetch(unsigned lane, ReservedRays& reserved, RayRecord& record,
-                                 int& count) const {
+  /// `word(slot, record)` is what the ray's record has instead of t_min.
+  template <class Word>
+  __device__ std::uint32_t fetch_with(unsigned lane, ReservedRays& reserved, RayRecord& record,
+                                      int& count, Word&& word) const {
     const std::uint32_t first = Rays::fetch(lane, reserved, record, count);
-    if (static_cast<int>(lane) < count) {
-      const auto path_key = [this](std::uint32_t path_index) {
-        return path_hash<MaskedTraits>(scene, names.id_of(path_index));
-      };
-      record.t_min =
-          __uint_as_float(this->key_of(scene, this->rays.slot(first + lane), path_key, record));
-    }
+    if (static_cast<int>(lane) < count) record.t_min = word(this->rays.slot(first + lane), record);
     return first;
+  }
+};
+
+/// Those of a scene without spheres and instances.
+template <class Rays>
+struct MaskedRays : NamedRays<Rays> {
+  using Query = QueryWithKey<typename Rays::Query>;
+
+  __device__ std::uint32_t fetch(unsigned lane, ReservedRays& reserved, RayRecord& next,
+                                 int& count) const {
+    const auto path_key = [this](std::uint32_t path_index) {
+      return path_hash<MaskedTraits>(this->scene, this->names.id_of(path_index));
+    };
+    return this->fetch_with(
+        lane, reserved, next, count, [&](std::uint32_t slot, RayRecord& record) {
+          return __uint_as_float(this->key_of(this->scene, slot, path_key, record));
+        });
   }
 
   __device__ bool hides(const Query& query, std::uint32_t slot, const TriangleHit& hit) const {
-    return mask_hides(MaskView(scene), scene.triangles.triangles, query.key(), slot, hit.b1,
-                      hit.b2);
+    return mask_hides(MaskView(this->scene), this->scene.triangles.triangles, query.key(), slot,
+                      hit.b1, hit.b2);
   }
 
  private:
   using MaskedTraits = Traits<Accel::cwbvh, Geometry::mixed, Lighting::sky, true>;
 };
 
-/// QueuedPaths or QueuedShadowRays of a scene that moves, without spheres and masks.
+/// Those of a scene that moves, without spheres and masks.
 template <class Rays>
-struct MovingRays : Rays {
+struct MovingRays : NamedRays<Rays> {
   using Query = TimedQuery<typename Rays::Query>;
-  Scene scene;
-  SampleBuffer names;  ///< gives a path's id by its index
 
-  __device__ std::uint32_t fetch(unsigned lane, ReservedRays& reserved, RayRecord& record,
+  __device__ std::uint32_t fetch(unsigned lane, ReservedRays& reserved, RayRecord& next,
                                  int& count) const {
-    const std::uint32_t first = Rays::fetch(lane, reserved, record, count);
-    if (static_cast<int>(lane) < count) {
-      const PathId id = names.id_of(this->path_index(this->rays.slot(first + lane)));
-      record.t_min = shutter_time(scene.shutter_times, scene.mask_seed, id);
-    }
-    return first;
+    return this->fetch_with(
+        lane, reserved, next, count, [this](std::uint32_t slot, const RayRecord&) {
+          return shutter_time(this->scene, this->names.id_of(this->path_index(slot)));
+        });
   }
 
   __device__ InstanceRecord placed(const InstanceRecord& instance, float time) const {
-    return placed_at(instance, *scene.motion, time);
+    return placed_at(instance, *this->scene.motion, time);
   }
 };
 

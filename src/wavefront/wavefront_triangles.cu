@@ -9,10 +9,10 @@ void WavefrontCuda::trace_persistently(const Rays& rays, const SampleBuffer& sam
                                        StageId stage) {
   using Masked = MaskedRays<Rays>;
   if (has_masks_) {
-    run_persistent<CwbvhLane<typename Masked::Query>>(Masked{rays, scene_, samples}, stage);
+    run_persistent<CwbvhLane<typename Masked::Query>>(Masked{{rays, scene_, samples}}, stage);
   } else if (scene_.triangles.instance_count > 0 && traits_.has_motion) {
     using Moving = MovingRays<Rays>;
-    run_persistent<InstancedLane<typename Moving::Query>>(Moving{rays, scene_, samples}, stage);
+    run_persistent<InstancedLane<typename Moving::Query>>(Moving{{rays, scene_, samples}}, stage);
   } else if (scene_.triangles.instance_count > 0) {
     run_persistent<InstancedLane<typename Rays::Query>>(rays, stage);
   } else {

@@ -213,13 +213,8 @@ TEST(Traversal, Instances) {
     }
     for (int twice = 0; twice < 2; ++twice) {  // ties between instances
       const std::uint32_t index = 99 - (2 * i + static_cast<std::uint32_t>(twice));
-      const InstanceRecord record{inverse(to_world),
-                                  group.order.binary_root,
-                                  index,
-                                  group.first_slot,
-                                  group.slot_count,
-                                  box,
-                                  {}};
+      const InstanceRecord record{inverse(to_world), group.order.binary_root, index,
+                                  group.first_slot,  group.slot_count,        box};
       binary.push_back(record);
       wide.push_back(record);
       wide.back().root = group.order.wide_root;

@@ -269,26 +269,17 @@ PT_HD InstanceVisit visit_instance(const InstanceRecord& instance, const Ray& ra
   return visit;
 }
 
-/// The same of an instance that may move: `place` finds where it lies, if the ray meets its box.
-template <class Place>
-PT_HD InstanceVisit visit_instance(const InstanceRecord& instance, const Ray& ray,
-                                   const SlabTestRay& world, float t_min, float t_max,
-                                   Place&& place) {
-  const SlabInterval part = part_in_box(instance, world);
-  InstanceVisit visit{ray, part, !may_have_hit(part, t_min, t_max)};
-  if (visit.is_empty) return visit;
-  visit.ray = object_ray(place(instance), ray);
-  visit.is_empty = !is_traceable(visit.ray);
-  return visit;
-}
-
-/// The same as a query sees it.
+/// The same as a query sees it; what moves is placed only if the ray meets its box.
 template <class Query>
 PT_HD InstanceVisit visit_instance_for(const Query& query, const InstanceRecord& instance,
                                        const Ray& ray, const SlabTestRay& world) {
   if constexpr (is_moving_query<Query>) {
-    return visit_instance(instance, ray, world, query.t_min(), query.t_max(),
-                          [&](const InstanceRecord& record) { return query.placed(record); });
+    const SlabInterval part = part_in_box(instance, world);
+    InstanceVisit visit{ray, part, !may_have_hit(part, query.t_min(), query.t_max())};
+    if (visit.is_empty) return visit;
+    visit.ray = object_ray(query.placed(instance), ray);
+    visit.is_empty = !is_traceable(visit.ray);
+    return visit;
   } else {
     return visit_instance(instance, ray, world, query.t_min(), query.t_max());
   }

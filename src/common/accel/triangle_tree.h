@@ -55,7 +55,7 @@ struct alignas(16) InstanceRecord {
   std::uint32_t index;
   std::uint32_t first_slot, slot_count;  ///< the group's triangles
   Bounds bounds;                         ///< in the world, of the whole motion; widened
-  MotionTrack track;                     ///< none: it stands still
+  MotionTrack track = {};                ///< none: it stands still
 };
 
 /// A view, passed to kernels by value. All groups share the arrays; child and slot indices are

@@ -130,9 +130,7 @@ struct BlockRays {
       key = __uint_as_float(ray_key);
     }
     if constexpr (Traits::has_motion && Traits::has_instances) {  // the time, instead of t_min
-      PathState path;
-      set_time<Traits>(scene, samples.id_of(slot.load_path_index()), path);
-      key = path.time;
+      key = shutter_time(scene, samples.id_of(slot.load_path_index()));
     }
     return {ray.origin, key, ray.direction, distance};
   }

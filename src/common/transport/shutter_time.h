@@ -26,11 +26,14 @@ PT_HD float shutter_time(const ShutterTimes& times, std::uint32_t seed, const Pa
                one_minus_ulp);
 }
 
+PT_HD float shutter_time(const Scene& scene, const PathId& id) {
+  return shutter_time(scene.shutter_times, scene.mask_seed, id);
+}
+
 /// Gives a path its time, in scenes that move.
 template <class Traits>
 PT_HD void set_time(const Scene& scene, const PathId& id, PathState& path) {
-  if constexpr (Traits::has_motion)
-    path.time = shutter_time(scene.shutter_times, scene.mask_seed, id);
+  if constexpr (Traits::has_motion) path.time = shutter_time(scene, id);
 }
 
 /// The camera at a time.
